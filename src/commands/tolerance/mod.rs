@@ -17,8 +17,8 @@ use stillbase_files::shards::{
 use stillbase_session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase_session::{Run, with_start_edits};
 use stillbase_study::tolerance::{
-    BinValues, Ensemble, EnsemblePart, KnownRanks, Limits, MAX_VALUES, Mode, PartReport, PartResults, SampleOutcome,
-    Summary, ToleranceError, Yields,
+    Batch, BinValues, CHUNK, Ensemble, EnsemblePart, KnownRanks, Limits, MAX_VALUES, Mode, PartReport, PartResults,
+    Recount, SampleOutcome, Summary, ToleranceError, Yields,
 };
 
 pub use self::report::{MergedParts, ToleranceAnswer};
@@ -49,8 +49,8 @@ Examples:
 A file has one row a machine: its number, its parameters, peak |n_B|, peak dynamic |f_B|, and the root mean square of
 both over time. Its head holds a checksum of it all, which --merge looks at. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
 
-A summary has one row a bin instead, at most 0.1 % wide: its machines and extremes, and exact sums. It takes some 0.6 MB
-for a million machines, hardly more for a billion, and merging is addition. With --simulate it compares nothing with
+A summary counts machines in bins at most 0.1 % wide instead, with extremes and exact sums for each power of two. It
+takes some 60 kB for a million machines, less than 1 MB for any number, and merging is addition. With --simulate it compares nothing with
 perfect tracking.
 
 JSON keys: scenario, simulated, samples, shard [from, to), seed, duration; parameters [{key, unit, nominal, spread,
@@ -127,7 +127,7 @@ pub struct ToleranceArguments {
 const MAX_MACHINES: u64 = 20_000_000;
 
 /// Number of machines after which a thread hands over the numbers that it has collected.
-const WAITING_MACHINES: usize = 1 << 14;
+const WAITING_MACHINES: u64 = 1 << 14;
 
 fn samples(text: &str) -> Result<u64, String> {
     let count = text.trim().parse().ok().filter(|n| (1..=MAX_SAMPLES).contains(n));
@@ -392,52 +392,58 @@ impl ToleranceArguments {
         }
         let mut known = KnownRanks::default();
         let counts_anew = limits != Limits::default() && limits != sum.limits();
-        let (mut passes, mut kept) = (BinValues::passes(&bins), [0; 3]);
+        let (mut passes, mut kept) = (BinValues::passes(&bins), None);
         if passes.is_empty() && counts_anew {
             passes.push(BinValues::default());
         }
         let bar = self.progress(sum.count() * passes.len() as u64);
-        for (i, mut pass) in passes.into_iter().enumerate() {
-            let empty = pass.clone();
-            pass.reserve(&bins);
-            let all = Mutex::new(pass);
-            let take_over = |found: &mut BinValues| {
-                all.lock().unwrap_or_else(PoisonError::into_inner).take_over(found);
-            };
+        let failed = |e| Failure::refused(run.scenario(), e);
+        let foreign = || {
+            let why = "it holds other machines than this program draws: want it made by the same version";
+            Failure::wrong_input(format!("{}: {why}", file.display()))
+        };
+        for values in passes {
+            // The first pass counts for all.
+            let limits = if counts_anew && kept.is_none() { limits } else { Limits::default() };
+            let empty = Recount { values, limits, ..Recount::default() };
+            let mut whole = empty.clone();
+            whole.values.reserve(&bins);
+            let all = Mutex::new(whole);
+            let take_over = |found: &mut Recount| all.lock().unwrap_or_else(PoisonError::into_inner).take_over(found);
             let workers = parallel::share_out(
                 ensemble,
                 self.mode(run),
                 sum.machines(),
-                || (empty.clone(), 0, [0; 3]),
-                |(found, since, kept), batch| {
+                || empty.clone(),
+                |found, batch| {
                     found.add(&batch.outcomes);
-                    for outcome in batch.outcomes.iter().filter(|_| i == 0 && counts_anew) {
-                        kept.iter_mut().zip(limits.kept(outcome)).for_each(|(kept, is)| *kept += u64::from(is));
-                    }
-                    *since += batch.outcomes.len();
                     // What waits on a thread stays small.
-                    if *since >= WAITING_MACHINES {
+                    if found.waiting >= WAITING_MACHINES {
                         take_over(found);
-                        *since = 0;
                     }
                     bar.inc(batch.samples.end - batch.samples.start);
                 },
             );
-            for (mut found, _, own) in workers.map_err(|e| Failure::refused(run.scenario(), e))? {
-                take_over(&mut found);
-                kept.iter_mut().zip(own).for_each(|(kept, own)| *kept += own);
-            }
-            let pass = all.into_inner().unwrap_or_else(PoisonError::into_inner);
-            if sum.learn(pass, &mut known).is_err() {
-                let why = "its bins hold other machines than this program draws: want it made by the same version";
-                return Err(Failure::wrong_input(format!("{}: {why}", file.display())));
+            workers.map_err(failed)?.iter_mut().for_each(take_over);
+            let whole = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+            kept.get_or_insert(whole.kept);
+            sum.learn(whole.values, &mut known).map_err(|_| foreign())?;
+        }
+        for (number, extreme) in sum.extremes() {
+            let machine = extreme.machine..extreme.machine + 1;
+            let chunk = extreme.machine / CHUNK as u64;
+            let mut sampler = ensemble.sampler();
+            let drawn = Batch::of(ensemble, &mut sampler, self.mode(run), chunk, &machine, false).map_err(failed)?;
+            let value = drawn.outcomes.first().map(|outcome| outcome.numbers()[number]);
+            if value != Some(extreme.value) {
+                return Err(foreign());
             }
         }
         bar.finish_and_clear();
         say_missing(&sum.missing(study.samples));
         let held = sum.machines();
         let machines = held.first().map_or(0, |own| own.start)..held.last().map_or(0, |own| own.end);
-        let yields = if counts_anew { limits.yields(kept, sum.count()) } else { sum.yields() };
+        let yields = kept.filter(|_| counts_anew).map_or_else(|| sum.yields(), |kept| limits.yields(kept, sum.count()));
         Ok((machines, sum.results(&known).map(|results| PartResults { yields, ..results })))
     }
 

@@ -6,14 +6,16 @@
 //! | `outcome` | a number of an outcome, or that with `_sums`; or `machines`, or a limit |
 //! | `bin` | upper 22 bits of the number as IEEE 754 stores it, with `_sums` the upper 12; of `machines` the first, else 0 |
 //! | `count` | number of machines |
-//! | `least`, `least_machine` | the least number, and the first machine that has it; of a limit the limit; of sums 0 |
+//! | `least`, `least_machine` | of sums the least number, and the first machine that has it; of a limit the limit; else 0 |
 //! | `greatest`, `greatest_machine` | the same for the greatest |
 //! | `sum_0` to `sum_2` | of sums Σ r, r the 52 bits of the mantissa, as digits to the base 2³¹, the lowest first; else 0 |
 //! | `low_0`, `low_1` | of sums Σ l, l the lowest 10 bits of r |
 //! | `square_0` to `square_3` | of sums Σ u², u the upper 42 bits of r |
+//! | `control` | of sums and limits a weighted sum of all that is counted, modulo a prime ([`ControlSum`]); else 0 |
 //!
-//! Rows of the same study, outcome and bin add up: `count` and all digits by SUM, `least` by MIN, `greatest` by MAX, with
-//! their machines. Digits may then exceed 2³¹; up to four million parts they are whole even as floating point numbers.
+//! Rows of the same study, outcome and bin add up: `count`, `control` and all digits by SUM, `least` by MIN, `greatest` by
+//! MAX, with their machines. Digits may then exceed 2³¹; up to four million parts they are whole even as floating point
+//! numbers.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -22,6 +24,7 @@ use std::path::{Path, PathBuf};
 use parquet::file::reader::FileReader;
 
 use super::checksum::{self, CheckedFile, ChecksumPlace};
+use super::control_sum::ControlSum;
 use super::error::{ShardError, shard_error};
 use super::rows::{STUDY_KEY, StudyId, difference, opened_parquet, parquet_failure, plain_file};
 use crate::parquet_rows::{ColumnKind, ParquetCell, ParquetHead, ParquetRows};
@@ -31,17 +34,16 @@ use crate::table::parquet_columns;
 use crate::{NewFile, WriteError};
 use stillbase_session::scenario::MAX_SAMPLES;
 use stillbase_settings::range::quote_clipped;
-use stillbase_study::tolerance::{
-    Bin, Extreme, Limits, OCTAVE_BINS, OCTAVES, Octave, SampleOutcome, Summary, Unmergeable,
-};
+use stillbase_study::tolerance::{Extreme, Limits, OCTAVE_BINS, OCTAVES, Octave, SampleOutcome, Summary, Unmergeable};
 
 const WORDS: [&str; 2] = ["study", "outcome"];
 
 /// Names of the columns of numbers: the bin, its count and its extremes.
 const PLACES: [&str; 6] = ["bin", "count", "least", "least_machine", "greatest", "greatest_machine"];
 
-/// Names of the columns of digits of sums.
-const DIGITS: [&str; 9] = ["sum_0", "sum_1", "sum_2", "low_0", "low_1", "square_0", "square_1", "square_2", "square_3"];
+/// Names of the columns of digits of sums, and of the sum that controls them.
+const DIGITS: [&str; 10] =
+    ["sum_0", "sum_1", "sum_2", "low_0", "low_1", "square_0", "square_1", "square_2", "square_3", "control"];
 
 /// Number of bits of a digit.
 const DIGIT_BITS: usize = 31;
@@ -68,38 +70,47 @@ pub fn is_summary(file: &Path) -> Result<bool, ShardError> {
     Ok(schema.columns().iter().any(|column| column.name() == "bin"))
 }
 
-/// A row of the table.
-struct Row {
-    outcome: String,
+/// A row of the table; that of a bin has only a count.
+struct Row<'a> {
+    outcome: &'a str,
     at: u64,
-    bin: Bin,
     octave: Octave,
+    control: u64,
 }
 
-/// Returns the rows of a summary, in the order of the table.
-fn rows(summary: &Summary) -> Vec<Row> {
-    let row = |outcome: &str, at: u64, bin: Bin| Row { outcome: outcome.into(), at, bin, octave: Octave::default() };
+const NOTHING: Extreme = Extreme { value: 0.0, machine: 0 };
+
+/// Gives `see` the rows of a summary, in the order of the table, until it returns an error.
+fn rows<E>(summary: &Summary, mut see: impl FnMut(Row<'_>) -> Result<(), E>) -> Result<(), E> {
+    let counted = |count: u64| Octave { count, least: NOTHING, greatest: NOTHING, ..Octave::EMPTY };
     let machine = |i: u64| Extreme { value: i as f64, machine: i };
-    let held = |own: &Range<u64>| {
-        let [least, greatest] = [own.start, own.end.saturating_sub(1)].map(machine);
-        row(MACHINES, own.start, Bin { count: own.end - own.start, least, greatest })
-    };
-    let mut all: Vec<Row> = summary.machines().iter().map(held).collect();
-    let Limits { moment, force } = summary.limits();
-    let both = moment.and(force).map(|_| 0.0);
-    let plain = |value: f64| Extreme { value, machine: 0 };
-    for ((outcome, limit), count) in LIMITS.into_iter().zip([moment, force, both]).zip(summary.kept()) {
-        let limit = limit.map(plain);
-        all.extend(limit.map(|limit| row(outcome, 0, Bin { count, least: limit, greatest: limit })));
+    for held in summary.machines() {
+        let [least, greatest] = [held.start, held.end.saturating_sub(1)].map(machine);
+        let octave = Octave { least, greatest, ..counted(held.end - held.start) };
+        see(Row { outcome: MACHINES, at: held.start, octave, control: 0 })?;
+    }
+    let limits = limits(summary.limits());
+    for (i, count) in summary.kept().into_iter().enumerate() {
+        let Some(limit) = limits[i].map(|value| Extreme { value, machine: 0 }) else { continue };
+        let octave = Octave { least: limit, greatest: limit, ..counted(count) };
+        see(Row { outcome: LIMITS[i], at: 0, octave, control: ControlSum::of_limit(i, count).total() })?;
     }
     for (number, outcome) in SampleOutcome::NAMES.into_iter().enumerate() {
-        all.extend(summary.octaves(number).map(|(at, octave)| {
-            let bin = Bin { count: octave.count, least: plain(0.0), greatest: plain(0.0) };
-            Row { octave: *octave, ..row(&format!("{outcome}{SUMS}"), at, bin) }
-        }));
-        all.extend(summary.bins(number).map(|(at, bin)| row(outcome, at, *bin)));
+        let sums = format!("{outcome}{SUMS}");
+        for (at, octave, bins) in summary.octaves_with_bins(number) {
+            let control = ControlSum::of_octave(number, at, octave, bins).total();
+            see(Row { outcome: &sums, at, octave: *octave, control })?;
+        }
+        for (at, count) in summary.bins(number) {
+            see(Row { outcome, at, octave: counted(count), control: 0 })?;
+        }
     }
-    all
+    Ok(())
+}
+
+/// Returns the limits of the three outcomes of limits; that of both is 0.
+fn limits(limits: Limits) -> [Option<f64>; 3] {
+    [limits.moment, limits.force, limits.moment.and(limits.force).map(|_| 0.0)]
 }
 
 /// Returns the digits of a number, the lowest first.
@@ -129,14 +140,15 @@ pub fn write_summary(file: &Path, force: bool, study: &StudyId, summary: &Summar
     let head = ParquetHead { row: "bin", columns, note: Some([STUDY_KEY, &note]), is_compressed: true };
     let mut table = ParquetRows::begin(out, &head).map_err(&failed)?;
     let name = study.name();
-    for Row { outcome, at, bin: Bin { count: machines, least, greatest }, octave } in rows(summary) {
-        let words = [&*name, &*outcome].map(ParquetCell::Text);
+    rows(summary, |Row { outcome, at, octave, control }| {
+        let Octave { count: machines, least, greatest, sum, low, squares } = octave;
+        let words = [&*name, outcome].map(ParquetCell::Text);
         let extremes = [least, greatest].map(|of| [ParquetCell::Number(of.value), count(of.machine)]);
-        let sums =
-            digits::<3>(octave.sum).into_iter().chain(digits::<2>(octave.low)).chain(digits::<4>(octave.squares));
         let places = [count(at), count(machines)].into_iter().chain(extremes.into_iter().flatten());
-        table.row(words.into_iter().chain(places).chain(sums.map(count))).map_err(&failed)?;
-    }
+        let sums = digits::<3>(sum).into_iter().chain(digits::<2>(low)).chain(digits::<4>(squares)).chain([control]);
+        table.row(words.into_iter().chain(places).chain(sums.map(count)))
+    })
+    .map_err(&failed)?;
     let mut out = table.finish().map_err(&failed)?;
     std::io::Write::flush(&mut out).map_err(|source| WriteError::Failed { file: file.into(), source })?;
     Ok(out.finish(ChecksumPlace::Tail)?)
@@ -223,29 +235,31 @@ fn whole(name: &str, x: f64, most: u64) -> Result<u64, String> {
 }
 
 impl FoundRow {
-    /// Returns the bin, its count and extremes. Machines are those of a study.
-    fn bin(&self, samples: u64) -> Result<(u64, Bin), String> {
+    /// Returns the place of the row, and its count and extremes. Machines are those of a study.
+    fn place(&self, samples: u64) -> Result<(u64, Octave), String> {
         let place = |i: usize, most: u64| whole(PLACES[i], self.places[i], most);
         let last = samples.saturating_sub(1);
         let extreme = |i: usize| Ok::<_, String>(Extreme { value: self.places[i], machine: place(i + 1, last)? });
-        Ok((
-            place(0, last.max(OCTAVES * OCTAVE_BINS - 1))?,
-            Bin { count: place(1, samples)?, least: extreme(2)?, greatest: extreme(4)? },
-        ))
+        let (at, count) = (place(0, last.max(OCTAVES * OCTAVE_BINS - 1))?, place(1, samples)?);
+        Ok((at, Octave { count, least: extreme(2)?, greatest: extreme(4)?, ..Octave::EMPTY }))
     }
 
-    /// Returns the sums.
-    fn octave(&self, count: u64) -> Result<Octave, String> {
+    /// Returns an octave with the sums of the row.
+    fn with_sums(&self, octave: Octave) -> Result<Octave, String> {
         let mut totals = [0_u128; 3];
         for (total, places) in totals.iter_mut().zip([0..3, 3..5, 5..9]) {
             for (digit, place) in places.enumerate() {
                 let x = u128::from(whole(DIGITS[place], self.digits[place], MAX_WHOLE as u64)?);
                 let sum = x.checked_mul(1 << (DIGIT_BITS * digit)).and_then(|x| total.checked_add(x));
-                *total = sum.filter(|sum| *sum < 1 << 126).ok_or_else(|| format!("{}: too large", DIGITS[place]))?;
+                *total = sum.ok_or_else(|| format!("{}: too large", DIGITS[place]))?;
             }
         }
         let [sum, low, squares] = totals;
-        Ok(Octave { count, sum, low, squares })
+        Ok(Octave { sum, low, squares, ..octave })
+    }
+
+    fn control(&self) -> Result<ControlSum, String> {
+        whole(DIGITS[9], self.digits[9], MAX_WHOLE as u64).map(ControlSum::of_column)
     }
 }
 
@@ -255,8 +269,9 @@ struct Found {
     machines: Vec<Range<u64>>,
     limits: [Option<f64>; 3],
     kept: [u64; 3],
-    bins: Vec<(usize, u64, Bin)>,
-    octaves: Vec<(usize, u64, Octave)>,
+    kept_controls: [ControlSum; 3],
+    bins: Vec<(usize, u64, u64)>,
+    octaves: BTreeMap<(usize, u64), (Octave, ControlSum)>,
 }
 
 /// Returns the place of a number of an outcome by its name.
@@ -266,8 +281,8 @@ fn place_of(name: &str) -> Option<usize> {
 
 impl Found {
     fn add(&mut self, study: &StudyId, outcome: &str, row: &FoundRow) -> Result<(), String> {
-        let (at, bin) = row.bin(study.samples)?;
-        let Bin { count, least, greatest } = bin;
+        let (at, octave) = row.place(study.samples)?;
+        let Octave { count, least, greatest, .. } = octave;
         if outcome == MACHINES {
             let (from, to) = (least.machine, greatest.machine + 1);
             if to <= from || at != from {
@@ -289,17 +304,21 @@ impl Found {
                 return Err(format!("the limit is {limit}: want a number above 0"));
             }
             self.limits[i] = Some(limit);
-            self.kept[i] += count;
+            self.kept[i] = self.kept[i].saturating_add(count);
+            self.kept_controls[i].add(row.control()?);
         } else if let Some(number) = outcome.strip_suffix(SUMS).and_then(place_of) {
             if at >= OCTAVES {
                 return Err(format!("bin is {at}: want at most {}", OCTAVES - 1));
             }
-            self.octaves.push((number, at, row.octave(count)?));
+            let (own, control) =
+                self.octaves.entry((number, at)).or_insert_with(|| (Octave::EMPTY, ControlSum::default()));
+            own.merge(&row.with_sums(octave)?);
+            control.add(row.control()?);
         } else if let Some(number) = place_of(outcome) {
-            if at >= OCTAVES * OCTAVE_BINS || !bin.is_plausible(at) {
-                return Err(format!("bin {at} has extremes that are not of this bin: want them as they were written"));
+            if at >= OCTAVES * OCTAVE_BINS {
+                return Err(format!("bin is {at}: want at most {}", OCTAVES * OCTAVE_BINS - 1));
             }
-            self.bins.push((number, at, bin));
+            self.bins.push((number, at, count));
         } else {
             let (limits, names) = (LIMITS.join(", "), SampleOutcome::NAMES.join(", "));
             return Err(format!(
@@ -320,20 +339,16 @@ impl Found {
                 return Err(counted_twice(&twice));
             }
         }
-        for (number, at, bin) in &self.bins {
-            summary.add_bin(*number, *at, bin);
+        for (number, at, count) in self.bins {
+            summary.add_bin(number, at, count);
         }
-        let mut sums = BTreeMap::<(usize, u64), Octave>::new();
-        for (number, at, octave) in &self.octaves {
-            let sum = sums.entry((*number, *at)).or_default();
-            *sum =
-                sum.checked_add(octave).ok_or_else(|| format!("{}{SUMS}: too large", SampleOutcome::NAMES[*number]))?;
+        for ((number, at), (octave, _)) in &self.octaves {
+            summary.add_octave(*number, *at, octave);
         }
-        sums.iter().for_each(|((number, at), octave)| summary.add_octave(*number, *at, octave));
         summary.add_kept(self.kept);
         let machines = summary.count();
         for (number, name) in SampleOutcome::NAMES.iter().enumerate() {
-            let count: u64 = summary.bins(number).map(|(_, bin)| bin.count).sum();
+            let count = summary.bins(number).fold(0, |sum: u64, (_, count)| sum.saturating_add(count));
             if count != machines {
                 let why = "want every row of every part once";
                 return Err(format!(
@@ -347,6 +362,21 @@ impl Found {
             return Err(format!(
                 "{name}{SUMS} of bin {at} do not fit the bins of {name}: want every row of every part once"
             ));
+        }
+        // A table of another program has no checksum of its bytes.
+        let changed = |what: &str| format!("{what} and its column control differ: want the rows as they were written");
+        for (number, name) in SampleOutcome::NAMES.iter().enumerate() {
+            for (at, octave, bins) in summary.octaves_with_bins(number) {
+                let told = self.octaves.get(&(number, at)).map(|(_, control)| *control);
+                if told != Some(ControlSum::of_octave(number, at, octave, bins)) {
+                    return Err(changed(&format!("{name}{SUMS} of bin {at}")));
+                }
+            }
+        }
+        for (i, name) in LIMITS.iter().enumerate() {
+            if self.kept_controls[i] != ControlSum::of_limit(i, self.kept[i]) {
+                return Err(changed(name));
+            }
         }
         let kept = summary.kept();
         for (number, limit) in [moment, force].into_iter().enumerate() {

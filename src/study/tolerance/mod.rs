@@ -20,7 +20,7 @@
 //! | the whole study of a run, for display | [`Study`] |
 //! | consecutive machines, with perfect tracking or simulated | [`Batch`] |
 //! | quantiles, histograms, yield | [`Quantiles`], [`Histogram`], [`Yield`] |
-//! | results of any number of machines in bounded memory, which add up exactly | [`Summary`], [`Bin`], [`Octave`], [`BinValues`] |
+//! | results of any number of machines in bounded memory, which add up exactly | [`Summary`], [`Octave`], [`Recount`] |
 //! | results over all machines, or a part of them | [`PartReport`]: [`Distributions`], [`Yields`], [`TrackingComparison`] |
 
 mod bands;
@@ -52,6 +52,6 @@ pub use simulate::simulate;
 pub use statistics::{Histogram, Quantiles, Yield};
 pub use study::{STUDY_INSTANTS, StudiedRun, Study, StudyQuery, neglected_effects};
 pub use summary::{
-    BIN_WIDTH, Bin, BinPlace, BinValues, Extreme, KnownRanks, Limits, MAX_VALUES, OCTAVE_BINS, OCTAVES, Octave,
+    BIN_WIDTH, BinPlace, BinValues, Extreme, KnownRanks, Limits, MAX_VALUES, OCTAVE_BINS, OCTAVES, Octave, Recount,
     Summary, Unmergeable, bin_of, lower_edge,
 };

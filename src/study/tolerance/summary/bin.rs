@@ -1,4 +1,4 @@
-//! [`Bin`] and [`Octave`]: the numbers of many machines that agree in their leading bits.
+//! Bins and [`Octave`]s: the numbers of many machines that agree in their leading bits.
 //!
 //! # Symbols
 //! | letter | meaning |
@@ -17,6 +17,9 @@ const BIN_BITS: u32 = 10;
 
 /// Number of bits of l.
 const LOW_BITS: u32 = 10;
+
+/// Number of bits of u.
+const UPPER_BITS: u32 = MANTISSA_BITS - LOW_BITS;
 
 /// Largest relative width of a bin of numbers that are not subnormal.
 pub const BIN_WIDTH: f64 = 1.0 / (1 << BIN_BITS) as f64;
@@ -64,66 +67,16 @@ impl Extreme {
     }
 }
 
-/// Machines whose numbers are in one bin.
+/// Machines whose numbers have one exponent: their extremes and their sums, which are whole numbers, so that they are exact
+/// in any order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bin {
+pub struct Octave {
     /// Number of machines.
     pub count: u64,
     /// The least number.
     pub least: Extreme,
     /// The greatest number.
     pub greatest: Extreme,
-}
-
-impl Bin {
-    /// A bin without machines.
-    pub const EMPTY: Self = Self {
-        count: 0,
-        least: Extreme { value: f64::INFINITY, machine: u64::MAX },
-        greatest: Extreme { value: f64::NEG_INFINITY, machine: u64::MAX },
-    };
-
-    /// Adds the machines of another bin.
-    #[inline]
-    pub fn merge(&mut self, other: &Self) {
-        self.count += other.count;
-        self.least = self.least.lesser(other.least);
-        self.greatest = self.greatest.greater(other.greatest);
-    }
-
-    /// Returns whether machines with numbers of this bin can bring it about.
-    pub fn is_plausible(&self, bin: u64) -> bool {
-        let Self { count, least, greatest } = *self;
-        let within = |x: f64| x.is_finite() && x >= 0.0 && bin_of(x) == bin;
-        let fits = match count {
-            0 => false,
-            1 => least == greatest,
-            _ => least.value <= greatest.value,
-        };
-        fits && within(least.value) && within(greatest.value)
-    }
-
-    /// Returns whether the number at a rank is known: at both ends, or if all numbers are equal.
-    pub fn is_known_at(&self, rank: u64) -> bool {
-        rank == 0 || rank + 1 == self.count || self.least.value == self.greatest.value
-    }
-
-    /// Returns the number at a rank among those of this bin, from 0: exact at both ends, in between as if the others lay
-    /// evenly.
-    pub fn at_rank(&self, rank: u64) -> f64 {
-        let (low, high) = (self.least.value, self.greatest.value);
-        match self.count {
-            0 | 1 => low,
-            count => low + (high - low) * (rank as f64 / (count - 1) as f64),
-        }
-    }
-}
-
-/// Sums over machines whose numbers have one exponent. They are whole numbers, so that they are exact, in any order.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Octave {
-    /// Number of machines.
-    pub count: u64,
     /// Σ r.
     pub sum: u128,
     /// Σ l.
@@ -133,57 +86,75 @@ pub struct Octave {
 }
 
 impl Octave {
-    /// Adds a number.
+    /// An octave without machines.
+    pub const EMPTY: Self = Self {
+        count: 0,
+        least: Extreme { value: f64::INFINITY, machine: u64::MAX },
+        greatest: Extreme { value: f64::NEG_INFINITY, machine: u64::MAX },
+        sum: 0,
+        low: 0,
+        squares: 0,
+    };
+
+    /// Adds the number of a machine.
     #[inline]
-    pub fn add(&mut self, x: f64) {
+    pub fn add(&mut self, x: f64, machine: u64) {
         let r = mantissa(x);
         let u = u128::from(r >> LOW_BITS);
+        let here = Extreme { value: x + 0.0, machine };
         self.count += 1;
+        self.least = self.least.lesser(here);
+        self.greatest = self.greatest.greater(here);
         self.sum += u128::from(r);
         self.low += u128::from(r & ((1 << LOW_BITS) - 1));
         self.squares += u * u;
     }
 
-    /// Adds the machines of another one.
+    /// Adds the machines of another one. Sums of a stranger's file may be too large; then they are no longer plausible.
     pub fn merge(&mut self, other: &Self) {
-        self.count += other.count;
-        self.sum += other.sum;
-        self.low += other.low;
-        self.squares += other.squares;
+        self.count = self.count.saturating_add(other.count);
+        self.least = self.least.lesser(other.least);
+        self.greatest = self.greatest.greater(other.greatest);
+        self.sum = self.sum.saturating_add(other.sum);
+        self.low = self.low.saturating_add(other.low);
+        self.squares = self.squares.saturating_add(other.squares);
     }
 
-    /// Returns the sums with those of another one added; `None` if they are larger than any machines have.
-    pub fn checked_add(&self, other: &Self) -> Option<Self> {
-        let add = |a: u128, b: u128| a.checked_add(b).filter(|sum| *sum < 1 << 126);
-        Some(Self {
-            count: self.count.checked_add(other.count)?,
-            sum: add(self.sum, other.sum)?,
-            low: add(self.low, other.low)?,
-            squares: add(self.squares, other.squares)?,
-        })
-    }
-
-    /// Returns whether as many numbers can have these sums, with those of bins of this octave: the least and the greatest
-    /// possible sums of u and of u² follow from counts and extremes.
-    pub fn is_plausible<'a>(&self, bins: impl Iterator<Item = &'a Bin>) -> bool {
-        let (mut count, mut least, mut most) = (0, [0; 2], [0; 2]);
-        for bin in bins {
-            count += bin.count;
-            let [low, high] = [bin.least, bin.greatest].map(|of| u128::from(mantissa(of.value) >> LOW_BITS));
-            // The machines with the extremes count themselves.
-            let others = u128::from(bin.count.saturating_sub(1));
-            let once = u128::from(bin.count.min(1));
-            for (i, [low, high]) in [[low, high], [low * low, high * high]].into_iter().enumerate() {
-                least[i] += others * low + once * high;
-                most[i] += others * high + once * low;
+    /// Returns whether machines with numbers of this octave, counted by bin in ascending order, can bring it about. The
+    /// extremes lie in the outer bins; counts of bins bound the sums of u and of u².
+    pub fn is_plausible(&self, octave: u64, bins: &[u64]) -> bool {
+        let filled = || (octave * OCTAVE_BINS..).zip(bins).filter(|(_, count)| **count > 0).map(|(bin, _)| bin);
+        let Self { count, least, greatest, sum, low, squares } = *self;
+        let is_within = |extreme: Extreme, bin: Option<u64>| {
+            let x = extreme.value;
+            x.is_finite() && x >= 0.0 && Some(bin_of(x)) == bin
+        };
+        let are_extremes = match count {
+            0 => false,
+            1 => least == greatest,
+            _ => least.value < greatest.value || least == greatest,
+        };
+        let (mut total, mut smallest, mut largest) = (0_u128, [0_u128; 2], [0_u128; 2]);
+        for (bin, machines) in (0..).zip(bins) {
+            let (from, machines) = (bin << (UPPER_BITS - BIN_BITS), u128::from(*machines));
+            let to = from + (1_u128 << (UPPER_BITS - BIN_BITS)) - 1;
+            total += machines;
+            for (i, [from, to]) in [[from, to], [from * from, to * to]].into_iter().enumerate() {
+                // Counts of a stranger's file may be any.
+                smallest[i] = smallest[i].saturating_add(machines.saturating_mul(from));
+                largest[i] = largest[i].saturating_add(machines.saturating_mul(to));
             }
         }
-        let total = self.sum.checked_sub(self.low).map(|upper| (upper >> LOW_BITS, upper & ((1 << LOW_BITS) - 1)));
-        let within = |i: usize, x: u128| (least[i]..=most[i]).contains(&x);
-        count == self.count
-            && self.low <= u128::from(count) << LOW_BITS
-            && total.is_some_and(|(upper, rest)| rest == 0 && within(0, upper))
-            && within(1, self.squares)
+        let upper =
+            sum.checked_sub(low).filter(|upper| upper.trailing_zeros() >= LOW_BITS).map(|upper| upper >> LOW_BITS);
+        let within = |i: usize, x: u128| (smallest[i]..=largest[i]).contains(&x);
+        are_extremes
+            && is_within(least, filled().next())
+            && is_within(greatest, filled().last())
+            && total == u128::from(count)
+            && low <= u128::from(count) << LOW_BITS
+            && upper.is_some_and(|upper| within(0, upper))
+            && within(1, squares)
     }
 
     /// Returns the sum of the numbers of an octave, exact but for one rounding.

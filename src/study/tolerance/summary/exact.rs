@@ -1,8 +1,10 @@
-//! [`BinValues`]: the numbers of some bins one by one, for quantiles that are exact, which [`KnownRanks`] keeps.
+//! [`Recount`]: machines of a summary that are drawn again, for quantiles that are exact ([`BinValues`], [`KnownRanks`]) and
+//! for limits that it did not count.
 
 use std::collections::BTreeMap;
 
 use super::super::SampleOutcome;
+use super::Limits;
 use super::bin::bin_of;
 
 /// A bin of one of the numbers of an outcome: the place of the number, then the bin.
@@ -43,7 +45,7 @@ impl BinValues {
     }
 
     /// Keeps the numbers of machines that fall into the bins.
-    pub fn add(&mut self, outcomes: &[SampleOutcome]) {
+    fn add(&mut self, outcomes: &[SampleOutcome]) {
         for ((number, bin), values) in &mut self.values {
             let all = outcomes.iter().map(|outcome| outcome.numbers()[*number]);
             values.extend(all.filter(|x| bin_of(*x) == *bin));
@@ -51,7 +53,7 @@ impl BinValues {
     }
 
     /// Takes over the numbers of another collection of the same bins, which keeps its bins.
-    pub fn take_over(&mut self, other: &mut Self) {
+    fn take_over(&mut self, other: &mut Self) {
         for (place, values) in &mut other.values {
             self.values.entry(*place).or_default().append(values);
         }
@@ -61,6 +63,37 @@ impl BinValues {
     pub(super) fn into_sorted(mut self) -> BTreeMap<BinPlace, Vec<f64>> {
         self.values.values_mut().for_each(|values| values.sort_unstable_by(f64::total_cmp));
         self.values
+    }
+}
+
+/// What is kept of machines that are drawn again.
+#[derive(Clone, Debug, Default)]
+pub struct Recount {
+    /// The numbers of some bins.
+    pub values: BinValues,
+    /// Limits within which machines are counted.
+    pub limits: Limits,
+    /// Number of machines within the limit of the moment, that of the force, and both.
+    pub kept: [u64; 3],
+    /// Number of machines since the last [`take_over`](Self::take_over).
+    pub waiting: u64,
+}
+
+impl Recount {
+    /// Adds machines.
+    pub fn add(&mut self, outcomes: &[SampleOutcome]) {
+        self.values.add(outcomes);
+        if self.limits != Limits::default() {
+            outcomes.iter().for_each(|outcome| self.limits.count(outcome, &mut self.kept));
+        }
+        self.waiting += outcomes.len() as u64;
+    }
+
+    /// Takes over what another one with the same bins and limits kept, so that it goes on without machines.
+    pub fn take_over(&mut self, other: &mut Self) {
+        self.values.take_over(&mut other.values);
+        self.kept.iter_mut().zip(std::mem::take(&mut other.kept)).for_each(|(own, kept)| *own += kept);
+        other.waiting = 0;
     }
 }
 

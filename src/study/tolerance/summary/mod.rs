@@ -1,10 +1,10 @@
 //! [`Summary`]: the results of any number of machines in bounded memory, which add up exactly.
 //!
-//! Each of the four numbers of an outcome falls into a bin ([`Bin`]) at most 0.1 % wide. Of a bin the summary holds how many
-//! machines it has, its least and its greatest number, and their machines; of an exponent ([`Octave`]) exact sums. Two
-//! summaries of different machines of one study add up to the summary of both: in any order and grouping the same, to the
-//! last bit. Means and deviations are those of the numbers themselves. Quantiles lie within their bin; they are exact with
-//! [`BinValues`], for which the machines are drawn again.
+//! Each of the four numbers of an outcome falls into a bin at most 0.1 % wide. Of a bin the summary holds how many machines
+//! it has; of an exponent ([`Octave`]) the least and the greatest number, their machines, and exact sums. Two summaries of
+//! different machines of one study add up to the summary of both: in any order and grouping the same, to the last bit.
+//! Means and deviations are those of the numbers themselves. Quantiles lie within their bin; they are exact with
+//! [`Recount`], for which the machines are drawn again.
 
 mod bin;
 mod exact;
@@ -16,19 +16,19 @@ use super::report::{Distribution, Distributions, LimitYield, Yields};
 use super::statistics::{Histogram, Quantiles, Yield, ranks};
 use super::{PartResults, SampleOutcome};
 
-pub use bin::{BIN_WIDTH, Bin, Extreme, OCTAVE_BINS, OCTAVES, Octave, bin_of, lower_edge};
-pub use exact::{BinPlace, BinValues, KnownRanks, MAX_VALUES};
+pub use bin::{BIN_WIDTH, Extreme, OCTAVE_BINS, OCTAVES, Octave, bin_of, lower_edge};
+pub use exact::{BinPlace, BinValues, KnownRanks, MAX_VALUES, Recount};
 
-/// The numbers of one exponent: their sums, and their bins.
+/// The numbers of one exponent: their sums, and how many are in each bin.
 #[derive(Clone, Debug, PartialEq)]
 struct Page {
     octave: Octave,
-    bins: Box<[Bin]>,
+    bins: Box<[u64]>,
 }
 
 impl Page {
     fn new() -> Self {
-        Self { octave: Octave::default(), bins: vec![Bin::EMPTY; OCTAVE_BINS as usize].into() }
+        Self { octave: Octave::EMPTY, bins: vec![0; OCTAVE_BINS as usize].into() }
     }
 }
 
@@ -52,26 +52,25 @@ impl Pages {
     fn add(&mut self, x: f64, machine: u64) {
         let bin = bin_of(x);
         let page = self.page_mut(bin / OCTAVE_BINS);
-        page.octave.add(x);
-        let here = Extreme { value: x + 0.0, machine };
-        page.bins[(bin % OCTAVE_BINS) as usize].merge(&Bin { count: 1, least: here, greatest: here });
+        page.octave.add(x, machine);
+        page.bins[(bin % OCTAVE_BINS) as usize] += 1;
     }
 
     fn filled(&self) -> impl Iterator<Item = (u64, &Page)> {
         (0..).zip(&self.pages).filter_map(|(octave, page)| Some((octave, page.as_ref()?)))
     }
 
-    /// Returns the bins with machines, in ascending order, with their numbers.
-    fn bins(&self) -> impl Iterator<Item = (u64, &Bin)> {
-        let all = self.filled().flat_map(|(octave, page)| (octave * OCTAVE_BINS..).zip(&page.bins));
-        all.filter(|(_, bin)| bin.count > 0)
+    /// Returns the bins with machines, in ascending order, with their numbers of machines.
+    fn bins(&self) -> impl Iterator<Item = (u64, u64)> {
+        let all = self.filled().flat_map(|(octave, page)| (octave * OCTAVE_BINS..).zip(page.bins.iter().copied()));
+        all.filter(|(_, count)| *count > 0)
     }
 
     fn merge(&mut self, other: &Self) {
         for (octave, page) in other.filled() {
             let own = self.page_mut(octave);
             own.octave.merge(&page.octave);
-            own.bins.iter_mut().zip(&page.bins).for_each(|(own, other)| own.merge(other));
+            own.bins.iter_mut().zip(&page.bins).for_each(|(own, other)| *own = own.saturating_add(*other));
         }
     }
 }
@@ -86,15 +85,13 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Returns whether a machine is within the limit of the moment, that of the force, and both.
-    pub fn kept(&self, outcome: &SampleOutcome) -> [bool; 3] {
+    /// Adds a machine to the numbers of those within the limit of the moment, that of the force, and both.
+    pub fn count(&self, outcome: &SampleOutcome, kept: &mut [u64; 3]) {
         let within = |limit: Option<f64>, x: f64| limit.is_some_and(|limit| x <= limit);
         let [moment, force] = [within(self.moment, outcome.peak_moment), within(self.force, outcome.peak_force)];
-        [moment, force, moment && force]
+        kept.iter_mut().zip([moment, force, moment && force]).for_each(|(kept, is)| *kept += u64::from(is));
     }
-}
 
-impl Limits {
     /// Returns the yields of as many machines, of which so many are within the limit of the moment, that of the force, and
     /// both.
     pub fn yields(&self, kept: [u64; 3], total: u64) -> Yields {
@@ -142,24 +139,24 @@ impl Summary {
             for (pages, x) in self.numbers.iter_mut().zip(outcome.numbers()) {
                 pages.add(x, machine);
             }
-            let kept = self.limits.kept(outcome);
-            (0..3).for_each(|i| self.kept[i] += u64::from(kept[i]));
+            self.limits.count(outcome, &mut self.kept);
         }
     }
 
-    /// Adds a bin of one of the numbers of an outcome, by its place in [`SampleOutcome::numbers`].
-    pub fn add_bin(&mut self, number: usize, at: u64, bin: &Bin) {
-        self.numbers[number].page_mut(at / OCTAVE_BINS).bins[(at % OCTAVE_BINS) as usize].merge(bin);
+    /// Adds machines to a bin of one of the numbers of an outcome, by its place in [`SampleOutcome::numbers`].
+    pub fn add_bin(&mut self, number: usize, at: u64, count: u64) {
+        let own = &mut self.numbers[number].page_mut(at / OCTAVE_BINS).bins[(at % OCTAVE_BINS) as usize];
+        *own = own.saturating_add(count);
     }
 
-    /// Adds the sums of an octave of one of the numbers of an outcome.
+    /// Adds the machines of an octave of one of the numbers of an outcome.
     pub fn add_octave(&mut self, number: usize, at: u64, octave: &Octave) {
         self.numbers[number].page_mut(at).octave.merge(octave);
     }
 
     /// Adds machines within the limit of the moment, that of the force, and both.
     pub fn add_kept(&mut self, kept: [u64; 3]) {
-        (0..3).for_each(|i| self.kept[i] += kept[i]);
+        self.kept.iter_mut().zip(kept).for_each(|(own, kept)| *own = own.saturating_add(kept));
     }
 
     /// Notes that machines are in the summary. Returns those that were before.
@@ -219,8 +216,9 @@ impl Summary {
         self.kept
     }
 
-    /// Returns the bins of one of the numbers of an outcome, in ascending order, with their numbers.
-    pub fn bins(&self, number: usize) -> impl Iterator<Item = (u64, &Bin)> {
+    /// Returns the bins with machines of one of the numbers of an outcome, in ascending order, with their numbers of
+    /// machines.
+    pub fn bins(&self, number: usize) -> impl Iterator<Item = (u64, u64)> {
         self.numbers[number].bins()
     }
 
@@ -229,10 +227,23 @@ impl Summary {
         self.numbers[number].filled().map(|(at, page)| (at, &page.octave))
     }
 
-    /// Returns an octave whose sums do not fit its bins: the place of the number, and the exponent.
+    /// Returns the octaves of one of the numbers of an outcome, in ascending order, with their exponents and the numbers of
+    /// machines of their bins.
+    pub fn octaves_with_bins(&self, number: usize) -> impl Iterator<Item = (u64, &Octave, &[u64])> {
+        self.numbers[number].filled().map(|(at, page)| (at, &page.octave, &*page.bins))
+    }
+
+    /// Returns the least and the greatest number of each octave, with the place of the number in an outcome.
+    pub fn extremes(&self) -> impl Iterator<Item = (usize, Extreme)> {
+        let all =
+            (0..SampleOutcome::NUMBERS).flat_map(|number| self.octaves(number).map(move |(_, own)| (number, own)));
+        all.flat_map(|(number, octave)| [(number, octave.least), (number, octave.greatest)])
+    }
+
+    /// Returns an octave whose extremes or sums do not fit its bins: the place of the number, and the exponent.
     pub fn implausible(&self) -> Option<(usize, u64)> {
         let all = (0..).zip(&self.numbers).flat_map(|(number, pages)| pages.filled().map(move |page| (number, page)));
-        let mut wrong = all.filter(|(_, (_, page))| !page.octave.is_plausible(page.bins.iter()));
+        let mut wrong = all.filter(|(_, (octave, page))| !page.octave.is_plausible(*octave, &page.bins));
         wrong.next().map(|(number, (octave, _))| (number, octave))
     }
 
@@ -245,18 +256,18 @@ impl Summary {
 
     /// Returns the bins whose numbers have to be collected for exact quantiles, with their counts.
     pub fn quantile_bins(&self) -> BTreeMap<BinPlace, u64> {
-        self.open_ranks().map(|(place, _, bin)| (place, bin.count)).collect()
+        self.open_ranks().map(|(place, _, count)| (place, count)).collect()
     }
 
-    /// Returns the ranks in bins that quantiles need and no extreme tells.
-    fn open_ranks(&self) -> impl Iterator<Item = (BinPlace, u64, &Bin)> {
+    /// Returns the ranks in bins that quantiles need and no extreme tells, with the numbers of machines of the bins.
+    fn open_ranks(&self) -> impl Iterator<Item = (BinPlace, u64, u64)> {
         (0..SampleOutcome::NUMBERS).flat_map(|number| {
-            let ranked = RankedBins::of(self.bins(number));
+            let ranked = RankedBins::of(&self.numbers[number]);
             let ranks = Quantiles::LEVELS.iter().filter_map(|level| ranks(ranked.count(), *level));
             let both: Vec<u64> = ranks.flat_map(|(below, above, _)| [below, above]).collect();
             both.into_iter().filter_map(move |rank| {
-                let (at, bin, rank) = ranked.at(rank);
-                (!bin.is_known_at(rank)).then_some(((number, at), rank, bin))
+                let own = ranked.at(rank);
+                own.known().is_none().then_some(((number, own.bin), own.rank, own.count))
             })
         })
     }
@@ -264,13 +275,17 @@ impl Summary {
     /// Keeps what quantiles need of the numbers of bins.
     ///
     /// # Errors
-    /// If a bin has other numbers than its count and extremes say.
+    /// If a bin has other numbers than its count and the extremes of its octave say.
     pub fn learn(&self, values: BinValues, known: &mut KnownRanks) -> Result<(), BinPlace> {
         let values = values.into_sorted();
-        for (place, rank, bin) in self.open_ranks() {
+        for (place, rank, count) in self.open_ranks() {
             let Some(values) = values.get(&place) else { continue };
-            let extremes = values.first().zip(values.last());
-            if values.len() as u64 != bin.count || extremes != Some((&bin.least.value, &bin.greatest.value)) {
+            let (number, bin) = place;
+            let octave = &self.numbers[number].pages[(bin / OCTAVE_BINS) as usize];
+            let extremes = octave.as_ref().map(|page| [page.octave.least.value, page.octave.greatest.value]);
+            let found = [values.first(), values.last()].map(|x| x.copied().unwrap_or(f64::NAN));
+            let fits = extremes.is_some_and(|[least, greatest]| least <= found[0] && found[1] <= greatest);
+            if values.len() as u64 != count || !fits {
                 return Err(place);
             }
             known.values.insert((place, rank), values[rank as usize]);
@@ -286,17 +301,19 @@ impl Summary {
     }
 
     fn distribution(&self, number: usize, known: &KnownRanks) -> Option<Distribution> {
-        let ranked = RankedBins::of(self.bins(number));
-        let (bins, count) = (&ranked.bins, ranked.count());
-        let (least, greatest) = (bins.first()?.1.least, bins.last()?.1.greatest);
+        let ranked = RankedBins::of(&self.numbers[number]);
+        let count = ranked.count();
+        let mut octaves = self.octaves(number).filter(|(_, octave)| octave.count > 0).map(|(_, octave)| octave);
+        let first = octaves.next()?;
+        let (least, greatest) = (first.least, octaves.last().unwrap_or(first).greatest);
         let mean = self.octaves(number).map(|(at, octave)| octave.total(at)).sum::<f64>() / count as f64;
         let squares: f64 = self.octaves(number).map(|(at, octave)| octave.squares_about(at, mean)).sum();
         let mut is_exact = true;
         let mut at_rank = |rank: u64| {
-            let (at, bin, place) = ranked.at(rank);
-            let exact = known.values.get(&((number, at), place)).copied();
-            is_exact &= bin.is_known_at(place) || exact.is_some();
-            exact.unwrap_or_else(|| bin.at_rank(place))
+            let own = ranked.at(rank);
+            let exact = own.known().or_else(|| known.values.get(&((number, own.bin), own.rank)).copied());
+            is_exact &= exact.is_some();
+            exact.unwrap_or_else(|| own.estimate())
         };
         let mut value = |level: f64| {
             let (below, above, part) = ranks(count, level)?;
@@ -311,7 +328,7 @@ impl Summary {
             quantiles: Quantiles { levels: levels.to_vec(), values },
             quantile_error: (!is_exact).then_some(BIN_WIDTH),
             extreme_machines: Some([least.machine, greatest.machine]),
-            histogram: histogram(bins, [least.value, greatest.value]),
+            histogram: histogram(&ranked.bins, [least.value, greatest.value]),
         })
     }
 
@@ -322,10 +339,12 @@ impl Summary {
 
     /// Returns the least and the greatest possible number of machines within a limit that were not counted.
     pub fn within(&self, number: usize, limit: f64) -> [u64; 2] {
-        let sum = |is_within: fn(&Bin, f64) -> bool| {
-            self.bins(number).filter(|(_, bin)| is_within(bin, limit)).map(|(_, bin)| bin.count).sum()
+        let ranked = RankedBins::of(&self.numbers[number]);
+        let sum = |is_within: fn([f64; 2], f64) -> bool| {
+            let places = ranked.bins.iter().filter(|place| is_within(place.ends(), limit));
+            places.map(|place| place.count).sum()
         };
-        [sum(|bin, limit| bin.greatest.value <= limit), sum(|bin, limit| bin.least.value <= limit)]
+        [sum(|[_, high], limit| high <= limit), sum(|[low, _], limit| low <= limit)]
     }
 
     /// Returns the results as those of a part of a study; `None` if there are no machines.
@@ -335,17 +354,57 @@ impl Summary {
     }
 }
 
-/// Bins in ascending order, with their numbers, and the count of machines up to each.
+/// A place among the numbers of a bin.
+#[derive(Clone, Copy)]
+struct RankedBin<'a> {
+    bin: u64,
+    /// Number of machines of the bin.
+    count: u64,
+    octave: &'a Octave,
+    /// Rank within the bin, from 0.
+    rank: u64,
+}
+
+impl RankedBin<'_> {
+    /// Returns the least and the greatest number that the bin can have.
+    fn ends(&self) -> [f64; 2] {
+        let [least, greatest] = [self.octave.least, self.octave.greatest].map(|of| of.value);
+        [lower_edge(self.bin).max(least), lower_edge(self.bin + 1).next_down().min(greatest)]
+    }
+
+    /// Returns the number at the rank, if an extreme of the octave tells it.
+    fn known(&self) -> Option<f64> {
+        let [least, greatest] = [self.octave.least, self.octave.greatest].map(|of| of.value);
+        let is_least = self.rank == 0 && bin_of(least) == self.bin;
+        let is_greatest = self.rank + 1 == self.count && bin_of(greatest) == self.bin;
+        match () {
+            () if is_least || least == greatest => Some(least),
+            () => is_greatest.then_some(greatest),
+        }
+    }
+
+    /// Returns the number at the rank as if those of the bin lay evenly.
+    fn estimate(&self) -> f64 {
+        let [low, high] = self.ends();
+        low + (high - low) * ((self.rank as f64 + 0.5) / self.count as f64)
+    }
+}
+
+/// Bins in ascending order, and the count of machines up to each.
 struct RankedBins<'a> {
-    bins: Vec<(u64, &'a Bin)>,
+    bins: Vec<RankedBin<'a>>,
     ends: Vec<u64>,
 }
 
 impl<'a> RankedBins<'a> {
-    fn of(bins: impl Iterator<Item = (u64, &'a Bin)>) -> Self {
-        let bins: Vec<_> = bins.collect();
-        let end = |sum: &mut u64, (_, bin): &(u64, &Bin)| {
-            *sum += bin.count;
+    fn of(pages: &'a Pages) -> Self {
+        let all = pages.filled().flat_map(|(octave, page)| {
+            let bins = (octave * OCTAVE_BINS..).zip(page.bins.iter().copied());
+            bins.map(|(bin, count)| RankedBin { bin, count, octave: &page.octave, rank: 0 })
+        });
+        let bins: Vec<_> = all.filter(|own| own.count > 0).collect();
+        let end = |sum: &mut u64, own: &RankedBin<'_>| {
+            *sum += own.count;
             Some(*sum)
         };
         let ends = bins.iter().scan(0, end).collect();
@@ -357,11 +416,11 @@ impl<'a> RankedBins<'a> {
         self.ends.last().copied().unwrap_or(0)
     }
 
-    /// Returns the bin of the machine at a rank below the count, and the rank within the bin.
-    fn at(&self, rank: u64) -> (u64, &'a Bin, u64) {
+    /// Returns the place of the machine at a rank below the count.
+    fn at(&self, rank: u64) -> RankedBin<'a> {
         let place = self.ends.partition_point(|end| *end <= rank);
-        let (at, bin) = self.bins[place];
-        (at, bin, rank - (self.ends[place] - bin.count))
+        let own = self.bins[place];
+        RankedBin { rank: rank - (self.ends[place] - own.count), ..own }
     }
 }
 
@@ -370,16 +429,16 @@ const INTERVALS: usize = 50;
 
 /// Returns a histogram of bins, ascending: its counts are exact, and its inner edges are edges of bins, as near to equal
 /// intervals as they are.
-fn histogram(bins: &[(u64, &Bin)], [least, greatest]: [f64; 2]) -> Histogram {
+fn histogram(bins: &[RankedBin<'_>], [least, greatest]: [f64; 2]) -> Histogram {
     let even = (1..INTERVALS).map(|i| least + (greatest - least) * i as f64 / INTERVALS as f64);
     let mut edges: Vec<f64> = even.map(|x| lower_edge(bin_of(x))).filter(|x| (least..greatest).contains(x)).collect();
     edges.dedup();
     let edges: Vec<f64> =
         [least].into_iter().chain(edges.into_iter().filter(|x| *x > least)).chain([greatest]).collect();
     let mut counts = vec![0; edges.len() - 1];
-    for (at, bin) in bins {
-        let above = edges[1..edges.len() - 1].partition_point(|edge| *edge <= lower_edge(*at));
-        counts[above] += bin.count;
+    for own in bins {
+        let above = edges[1..edges.len() - 1].partition_point(|edge| *edge <= lower_edge(own.bin));
+        counts[above] += own.count;
     }
     Histogram { edges, counts }
 }
