@@ -29,6 +29,12 @@ pub struct FrontPoint {
     /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`PlacementTolerance::DEFAULT`]), kg m.
     #[serde(rename = "off_by")]
     pub residual_if_misplaced: f64,
+    /// Upper bound of what its mass or Σ D_k lies above the least for the other, kg or kg m²; `None` for discs as they are
+    /// bought.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap: Option<f64>,
+    /// Whether the gap is within rounding.
+    pub certified: bool,
 }
 
 /// Further measures of the machines of a Pareto front.
@@ -83,6 +89,8 @@ impl FrontPoint {
             torque: motion.map(|motion| greatest_torque(machine, motion)),
             workspace: workspace.then(|| plane_area(machine)).flatten(),
             residual_if_misplaced: worst_residual(machine, &PlacementTolerance::DEFAULT).force,
+            gap: Some(placed.gap).filter(|gap| gap.is_finite()),
+            certified: placed.is_certified(),
         }
     }
 }

@@ -107,7 +107,14 @@ fn parquet_of_others_is_read() {
             Values::Double((0..3).map(|i| f64::from(from + i)).collect(), None),
         ]
     };
-    for compression in [Compression::UNCOMPRESSED, Compression::SNAPPY] {
+    // Polars and DataFusion compress with Zstandard.
+    for compression in [
+        Compression::UNCOMPRESSED,
+        Compression::SNAPPY,
+        Compression::ZSTD(Default::default()),
+        Compression::GZIP(Default::default()),
+        Compression::LZ4_RAW,
+    ] {
         write(&file, schema, compression, &[part(0), part(3)]);
         let table = signals(&file).expect("a table");
         assert_eq!(table.time, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);

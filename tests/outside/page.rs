@@ -79,7 +79,7 @@ fn what_pandas_writes_is_read() {
                   table.to_parquet('run.parquet')\n\
                   table.to_csv('gaps.csv')\n\
                   table.reset_index().iloc[::2].query('`time s` > 0.05').to_parquet('part.parquet')\n\
-                  table.to_parquet('zstd.parquet', compression='zstd')\n\
+                  [table.to_parquet(how + '.parquet', compression=how) for how in ('zstd', 'gzip', 'lz4', 'brotli')]\n\
                   table.assign(word='a').to_parquet('text.parquet')\n\
                   pd.DataFrame({'t': pd.to_timedelta(range(9), unit='s'), 'x': 0.5, 'y': 0.6}).to_parquet('times.parquet')\n";
     let program = |args: &[&str]| {
@@ -115,8 +115,12 @@ fn what_pandas_writes_is_read() {
         let run = python().args(["-c", &script]).current_dir(&folder.0).stdin(Stdio::null()).output().expect("there");
         assert!(run.status.success(), "{line}: {}", String::from_utf8_lossy(&run.stderr));
     }
-    let (status, said) = program(&["table", "zstd.parquet"]);
-    assert!(status == Some(2) && said.contains("without compression, or with Snappy"), "{said}");
+    for how in ["zstd", "gzip", "lz4"] {
+        let (status, said) = program(&["diff", "run.parquet", &format!("{how}.parquet")]);
+        assert_eq!(status, Some(0), "{how}: {said}");
+    }
+    let (status, said) = program(&["table", "brotli.parquet"]);
+    assert!(status == Some(2) && said.contains("without compression, or Snappy, Zstandard"), "{said}");
     let (status, said) = program(&["table", "text.parquet"]);
     assert!(status == Some(2) && said.contains("column word: text: want numbers"), "{said}");
     let (status, said) = program(&["import", "times.parquet", "-o", "times.toml"]);

@@ -439,6 +439,30 @@ fn designs_of_a_study_are_those_found_alone() {
     let fronts = ["--vary", "length.l5=0.3:0.6", "--vary", "thickness=0.01:0.04", "--points", "5", "--front", "3"];
     let filled = object(&[&study[..], &fronts, &["--table", &parquet]].concat());
     assert!(filled["found"] == 5 && filled["best"].as_array().is_some_and(|all| all.len() > 3));
+    assert!(filled["best"].as_array().expect("a list").iter().all(|best| best["certified"] == true));
+    // Options of the search vary, too; each design is found alone by what is said.
+    let [study, vary] = [
+        &["design", BARE, "--counterweights"][..],
+        &["--vary", "clearance=0,0.01", "--vary", "max-mass=2,4,9", "--vary", "objective=mass,inertia"],
+    ];
+    let options = object(&[study, vary].concat());
+    assert_eq!((&options["points"], &options["found"], &options["refused"]), (&json!(12), &json!(8), &json!(4)));
+    for best in options["best"].as_array().expect("a list") {
+        let typed: Vec<&str> = best["options"].as_str().expect("options").split(' ').collect();
+        let alone = object(&[study, &typed].concat());
+        near(&best["added_mass"], &alone["added_mass"], 1e-12, "added mass");
+        assert_eq!((&best["gap"], &best["certified"]), (&alone["gap"], &json!(true)));
+    }
+    for (more, status, words) in [
+        (&["--vary", "max-mass=2,x"][..], 2, "max-mass: want a number"),
+        (&["--vary", "max-mass=2,3", "--max-mass", "1=4"], 2, "by another option"),
+        (&["--vary", "objective=price"], 2, "objective"),
+        (&["--vary", "design.clearance=0.01,0.02"], 2, "design.clearance: no setting"),
+        (&["--vary", "clearance=0.01:0.02:2", "--clearance", "0.1"], 2, "by another option"),
+    ] {
+        fails(&[study, more].concat(), status, &[words]);
+    }
+    let study = ["design", BARE, "--counterweights", "--max-mass", "9"];
     for (more, status, words) in [
         (&["--vary", "length.l5=0.3:0.6"][..], 2, "--points"),
         (&["--vary", "length.l5=0.6:0.3:4"], 2, "LO:HI"),

@@ -6,16 +6,16 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use stillbase_mechanics::machine::{Inertia, Machine};
+use stillbase_mechanics::machine::{Inertia, KEYS, Machine};
 use stillbase_planning::Motion;
-use stillbase_session::scenario::{DesignBrief, key_of};
+use stillbase_session::scenario::DesignBrief;
 use stillbase_settings::number::{counted, fixed_or_finer};
 use stillbase_settings::text::shell_word;
 use stillbase_study::counterweights::CounterweightReport;
 use stillbase_study::design_space::{Axis, AxisValues, DesignSpace, MAX_POINTS, NoDesignSpace, non_dominated, typed};
+use stillbase_study::front_point::FrontPoint;
 use stillbase_study::tolerance::shard;
 
-use super::super::dimensions::density;
 use super::super::failure::Failure;
 use super::super::file_form::FileForm;
 use super::super::output::TextTable;
@@ -23,13 +23,14 @@ use super::super::rows::{RowTarget, Rows};
 use super::super::tolerance::parse_shard;
 use super::DesignArguments;
 use super::brief::report_brief;
-use super::weighed::report_removed;
+use super::weighed::{VARIED_OPTIONS, gap_cell, report_removed};
 
 /// Which settings vary, and where the designs go.
 #[derive(Args)]
 pub struct VaryArguments {
     /// Find the counterweights for many machines: with each of these values of a setting, or N of them from LO to HI. KEY
-    /// is one of --set, or material or thickness; several make a grid
+    /// is one of --set, or an option: material, thickness, across, clearance, max-mass, max-radius, max-added, max-inertia
+    /// or objective; several make a grid
     #[arg(
         long, value_name = "KEY=V1,V2,…|LO:HI[:N]", requires = "counterweights", value_parser = axis,
         conflicts_with_all = ["other_machines", "output", "length"], allow_hyphen_values = true
@@ -95,12 +96,12 @@ pub struct BestDesign {
     added_mass: f64,
     /// Σ D_k, kg m².
     inertia: f64,
-    /// Upper bound on what the objective may lie above its minimum; absent of a front.
+    /// Upper bound on what the objective may lie above its minimum: of a front mass or Σ D_k, with a bound on the other.
+    /// Absent for discs as they are bought.
     #[serde(skip_serializing_if = "Option::is_none")]
     gap: Option<f64>,
-    /// Whether the gap is within rounding; absent of a front.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    certified: Option<bool>,
+    /// Whether the gap is within rounding.
+    certified: bool,
 }
 
 /// Answer of a study of designs.
@@ -160,65 +161,35 @@ impl DesignArguments {
         let brief = self.weighing.brief(machine, design);
         report_brief(self.machine.name(), design, &brief, |key| self.weighing.asks_for(key));
         report_removed(machine, "");
-        let is_number = |axis: &&Axis| match &axis.values {
-            AxisValues::Between(_) => true,
-            AxisValues::Listed(all) => all.iter().all(|word| word.parse::<f64>().is_ok_and(f64::is_finite)),
+        let mut table = target.map(|to| DesignTable::begin(&to, space.axes())).transpose()?;
+        let mut findings = Findings::default();
+        let mut write = |point: u64, values: &[String], outcome: &str, measures| match &mut table {
+            Some(table) => table.row(point, values, outcome, measures),
+            None => Ok(()),
         };
-        let numeric: Vec<bool> = space.axes().iter().map(|axis| is_number(&axis)).collect();
-        let heads = |which: bool| {
-            space.axes().iter().zip(&numeric).filter(move |(_, own)| **own == which).map(|(axis, _)| axis.key.clone())
-        };
-        let words: Vec<String> = ["outcome".to_owned()].into_iter().chain(heads(false)).collect();
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let columns: Vec<String> =
-            ["point".to_owned()].into_iter().chain(heads(true)).chain(HEADS.map(String::from)).collect();
-        let mut rows = target.map(|to| Rows::begin_with(&to, ("design", &words), &columns)).transpose()?;
-        let (mut best, mut reasons, mut found, mut refused) = (Vec::<BestDesign>::new(), Vec::new(), 0, 0);
         for point in points.clone() {
             let values = space.point(point);
-            let texts = |outcome: String| {
-                let own = values.iter().zip(&numeric).filter(|(_, numeric)| !**numeric).map(|(value, _)| value.clone());
-                [outcome].into_iter().chain(own).collect::<Vec<_>>()
-            };
-            let numbers =
-                values.iter().zip(&numeric).filter(|(_, numeric)| **numeric).map(|(value, _)| value.parse().ok());
-            let numbers: Vec<Option<f64>> = [Some(point as f64)].into_iter().chain(numbers).collect();
-            let mut write = |outcome: String, measures: [Option<f64>; 7]| match &mut rows {
-                Some(rows) => {
-                    let texts = texts(outcome);
-                    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
-                    rows.named_row(&texts, numbers.iter().copied().chain(measures))
-                }
-                None => Ok(()),
-            };
-            match self.design_at(machine, &brief, motion, space.axes(), &values) {
+            match self.design_at(machine, design, motion, space.axes(), &values) {
                 Ok((machine, report)) => {
-                    found += 1;
+                    findings.found += 1;
                     for measures in measures(&machine, &report) {
-                        write("found".into(), measures)?;
-                        best.push(best_design(point, typed_settings(space.axes(), &values), &measures));
+                        write(point, &values, "found", measures)?;
+                        findings.add(BestDesign::of(point, typed_settings(space.axes(), &values), &measures));
                     }
                 }
                 Err(Failure::NoAnswer(why) | Failure::WrongInput(why)) => {
-                    refused += 1;
-                    write(why.clone(), [None; 7])?;
-                    if reasons.len() < MAX_REASONS {
-                        reasons.push(Reason { why, point });
-                    }
+                    write(point, &values, &why, [None; 7])?;
+                    findings.refuse(Reason { why, point });
                 }
                 Err(why) => return Err(why.with_context(typed_settings(space.axes(), &values))),
             }
-            // The best so far suffice.
-            if best.len() > 4096 {
-                best = kept(best);
-            }
         }
         // The reasons are worth keeping, too.
-        rows.map(Rows::finish).transpose()?;
-        if found == 0 {
+        table.map(DesignTable::finish).transpose()?;
+        if findings.found == 0 {
             // The first point says what is wrong, as it would alone.
             let values = space.point(points.start);
-            let alone = self.design_at(machine, &brief, motion, space.axes(), &values).map(|_| ());
+            let alone = self.design_at(machine, design, motion, space.axes(), &values).map(|_| ());
             let none = format!(
                 "none of {} has a design: {}",
                 counted(points.end - points.start, "point"),
@@ -227,9 +198,16 @@ impl DesignArguments {
             return alone.map_err(|why| why.with_context(none));
         }
         let Range { start, end } = points;
-        let file = of.table.as_ref().map(|file| file.display().to_string());
-        let answer =
-            Answer { points: space.count(), shard: [start, end], found, refused, reasons, best: kept(best), file };
+        let Findings { best, reasons, found, refused } = findings;
+        let answer = Answer {
+            points: space.count(),
+            shard: [start, end],
+            found,
+            refused,
+            reasons,
+            best: kept(best),
+            file: of.table.as_ref().map(|file| file.display().to_string()),
+        };
         self.format.print(&answer, text)
     }
 
@@ -237,80 +215,149 @@ impl DesignArguments {
     fn check_axes(&self, machine: &Machine, axes: &[Axis]) -> Result<(), Failure> {
         for Axis { key, values } in axes {
             let wrong = |why: &str| Failure::wrong_input(format!("--vary {key}: {why}"));
-            let is_given = match key.as_str() {
-                "material" => self.weighing.material.is_some(),
-                "thickness" => self.weighing.thickness.is_some(),
-                key => self.machine.sets(key),
-            };
-            if is_given {
+            let is_option = VARIED_OPTIONS.contains(&key.as_str());
+            if if is_option { self.weighing.gives(key) } else { self.machine.sets(key) } {
                 return Err(wrong("it is given by another option, too: want one of both"));
             }
-            match (key.as_str(), values) {
-                ("material", AxisValues::Listed(all)) => {
-                    all.iter().try_for_each(|word| density(word).map(|_| ())).map_err(|why| wrong(&why))?;
-                }
-                ("material" | "thickness", _) => {}
-                (key, _) if key_of(key).is_none() || !machine.uses(key, false) => {
-                    return Err(wrong(
-                        "no setting of this machine: want a key of --set, as length.NAME or payload.mass, or material or \
-                         thickness",
-                    ));
-                }
-                _ => {}
+            if !is_option && (!KEYS.iter().any(|own| own.matches(key)) || !machine.uses(key, false)) {
+                let options = VARIED_OPTIONS.join(", ");
+                return Err(wrong(&format!(
+                    "no setting of this machine: want a key of --set, as length.NAME or payload.mass, or one of {options}"
+                )));
+            }
+            if let (true, AxisValues::Listed(all)) = (is_option, values) {
+                let mut tried = (*self.weighing).clone();
+                all.iter().try_for_each(|word| tried.give(key, word)).map_err(|why| wrong(&why))?;
             }
         }
         Ok(())
     }
 
-    /// Finds the counterweights of a machine with settings changed.
+    /// Finds the counterweights of a machine with settings and options changed.
     fn design_at(
         &self,
         machine: &Machine,
-        brief: &DesignBrief,
+        design: &DesignBrief,
         motion: Option<&Motion>,
         axes: &[Axis],
         values: &[String],
     ) -> Result<(Machine, CounterweightReport), Failure> {
-        let mut brief = brief.clone();
+        let mut weighing = (*self.weighing).clone();
         let mut pairs = Vec::new();
-        for (axis, value) in axes.iter().zip(values) {
-            let number = || value.parse().map_err(|_| Failure::wrong_input("want a number"));
-            match axis.key.as_str() {
-                "material" => brief.density = density(value).map_err(Failure::wrong_input)?,
-                "thickness" => brief.thickness = number()?,
-                key => pairs.push((key, value.as_str())),
+        for (Axis { key, .. }, value) in axes.iter().zip(values) {
+            match VARIED_OPTIONS.contains(&key.as_str()) {
+                true => weighing.give(key, value).map_err(Failure::wrong_input)?,
+                false => pairs.push((key.as_str(), value.as_str())),
             }
         }
         let machine = machine.set_all(pairs).map_err(Failure::wrong_input)?;
-        self.weighing.find(&machine, &brief, motion)
+        let brief = weighing.brief(&machine, design);
+        weighing.find(&machine, &brief, motion)
     }
 }
 
-fn best_design(point: u64, options: String, measures: &[Option<f64>; 7]) -> BestDesign {
-    let [added_mass, inertia, .., gap, certified] = *measures;
-    let [added_mass, inertia] = [added_mass, inertia].map(|x| x.unwrap_or(f64::NAN));
-    BestDesign { point, options, added_mass, inertia, gap, certified: certified.map(|x| x == 1.0) }
+/// The table of a study: a row for each design, or for the reason why there is none.
+struct DesignTable {
+    rows: Rows,
+    /// Whether the values of each setting are numbers; others are columns of text.
+    numeric: Vec<bool>,
+}
+
+impl DesignTable {
+    fn begin(to: &RowTarget, axes: &[Axis]) -> Result<Self, Failure> {
+        let is_number = |axis: &Axis| match &axis.values {
+            AxisValues::Between(_) => true,
+            AxisValues::Listed(all) => all.iter().all(|word| word.parse::<f64>().is_ok_and(f64::is_finite)),
+        };
+        let numeric: Vec<bool> = axes.iter().map(is_number).collect();
+        let heads = |are_numbers: bool| {
+            let own = axes.iter().zip(&numeric).filter(move |(_, numeric)| **numeric == are_numbers);
+            own.map(|(axis, _)| axis.key.as_str())
+        };
+        let words: Vec<&str> = ["outcome"].into_iter().chain(heads(false)).collect();
+        let columns: Vec<String> = ["point"].into_iter().chain(heads(true)).chain(HEADS).map(String::from).collect();
+        Ok(Self { rows: Rows::begin_with(to, ("design", &words), &columns)?, numeric })
+    }
+
+    fn row(
+        &mut self,
+        point: u64,
+        values: &[String],
+        outcome: &str,
+        measures: [Option<f64>; HEADS.len()],
+    ) -> Result<(), Failure> {
+        let of = |are_numbers: bool| {
+            let own = values.iter().zip(&self.numeric).filter(move |(_, numeric)| **numeric == are_numbers);
+            own.map(|(value, _)| value.as_str())
+        };
+        let texts: Vec<&str> = [outcome].into_iter().chain(of(false)).collect();
+        let numbers: Vec<Option<f64>> = of(true).map(|value| value.parse().ok()).collect();
+        self.rows.named_row(&texts, [Some(point as f64)].into_iter().chain(numbers).chain(measures))
+    }
+
+    fn finish(self) -> Result<(), Failure> {
+        self.rows.finish()
+    }
+}
+
+/// Number of designs after which only the best are kept.
+const WAITING_DESIGNS: usize = 4096;
+
+/// What a study has found so far.
+#[derive(Default)]
+struct Findings {
+    best: Vec<BestDesign>,
+    reasons: Vec<Reason>,
+    /// Number of points with a design, and of those without.
+    found: u64,
+    refused: u64,
+}
+
+impl Findings {
+    fn add(&mut self, design: BestDesign) {
+        self.best.push(design);
+        if self.best.len() > WAITING_DESIGNS {
+            self.best = kept(std::mem::take(&mut self.best));
+        }
+    }
+
+    fn refuse(&mut self, reason: Reason) {
+        self.refused += 1;
+        if self.reasons.len() < MAX_REASONS {
+            self.reasons.push(reason);
+        }
+    }
+}
+
+impl BestDesign {
+    fn of(point: u64, options: String, measures: &[Option<f64>; HEADS.len()]) -> Self {
+        let [added_mass, inertia, .., gap, certified] = *measures;
+        let [added_mass, inertia] = [added_mass, inertia].map(|x| x.unwrap_or(f64::NAN));
+        Self { point, options, added_mass, inertia, gap, certified: certified == Some(1.0) }
+    }
 }
 
 /// Returns settings as a command line takes them.
 fn typed_settings(axes: &[Axis], values: &[String]) -> String {
     let one = |(axis, value): (&Axis, &String)| match axis.key.as_str() {
-        key @ ("material" | "thickness") => format!("--{key} {}", shell_word(value)),
+        key if VARIED_OPTIONS.contains(&key) => format!("--{key} {}", shell_word(value)),
         key => format!("--set {}", shell_word(&format!("{key}={value}"))),
     };
     axes.iter().zip(values).map(one).collect::<Vec<_>>().join(" ")
 }
 
 /// Returns the measures of a design, in the order of their columns: one row, or one for each machine of its front.
-fn measures(machine: &Machine, report: &CounterweightReport) -> Vec<[Option<f64>; 7]> {
+fn measures(machine: &Machine, report: &CounterweightReport) -> Vec<[Option<f64>; HEADS.len()]> {
+    let is = |certified: bool| Some(f64::from(u8::from(certified)));
     if report.front_points.is_empty() {
         let inertia = Inertia::of(machine).total_momentum();
-        let certified = Some(f64::from(u8::from(report.certified)));
         let added = Some(report.measures.added_mass);
-        return vec![[added, Some(inertia), report.torque, None, None, Some(report.gap), certified]];
+        let gap = Some(report.gap).filter(|gap| gap.is_finite());
+        return vec![[added, Some(inertia), report.torque, None, None, gap, is(report.certified)]];
     }
-    let of = |p: &stillbase_study::front_point::FrontPoint| {
-        [Some(p.added_mass), Some(p.inertia), p.torque, p.workspace, Some(p.residual_if_misplaced), None, None]
+    let of = |p: &FrontPoint| {
+        let off_by = Some(p.residual_if_misplaced);
+        [Some(p.added_mass), Some(p.inertia), p.torque, p.workspace, off_by, p.gap, is(p.certified)]
     };
     report.front_points.iter().map(of).collect()
 }
@@ -325,8 +372,7 @@ fn text(answer: &Answer) -> String {
     let [from, to] = answer.shard;
     let mut table = TextTable::new(["point", "added kg", "Σ D_k kg m²", "gap", "settings"]).with_words(4);
     for design in &answer.best {
-        let mark = if design.certified == Some(false) { ", not certified" } else { "" };
-        let gap = design.gap.map_or_else(|| "–".into(), |gap| format!("{gap:.1e}{mark}"));
+        let gap = gap_cell(design.gap, design.certified);
         let [mass, inertia] = [design.added_mass, design.inertia].map(|x| fixed_or_finer(x, 6));
         table.row([design.point.to_string(), mass, inertia, gap, design.options.clone()]);
     }

@@ -31,7 +31,7 @@ use super::super::sites::{link, range, sites};
 use super::measures;
 
 /// Constraints on the counterweights, and the objective to minimise.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct WeightArguments {
     /// Balance the machine by counterweights, discs on the links; existing ones are removed first unless
     /// they have fixed = true
@@ -125,7 +125,52 @@ pub struct WeightArguments {
     bought: bool,
 }
 
+/// Options that a study of many designs may vary, without `--`: a word each.
+pub const VARIED_OPTIONS: [&str; 9] =
+    ["material", "thickness", "across", "clearance", "max-mass", "max-radius", "max-added", "max-inertia", "objective"];
+
 impl WeightArguments {
+    /// Returns whether one of [`VARIED_OPTIONS`] is given.
+    pub fn gives(&self, option: &str) -> bool {
+        match option {
+            "max-mass" => !self.max_mass.is_empty(),
+            "objective" => self.objective.is_some(),
+            option => self.clone().number_of(option).is_some_and(|number| number.is_some()),
+        }
+    }
+
+    /// Gives one of [`VARIED_OPTIONS`], as the command line does.
+    ///
+    /// # Errors
+    /// If the word is no value of the option.
+    pub fn give(&mut self, option: &str, word: &str) -> Result<(), String> {
+        match option {
+            "max-mass" => self.max_mass.push(number(word)?.to_string()),
+            "objective" => self.objective = Some(objective(word)?),
+            option => {
+                let value = if option == "material" { density(word)? } else { number(word)? };
+                if let Some(own) = self.number_of(option) {
+                    *own = Some(value);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the number of one of [`VARIED_OPTIONS`].
+    fn number_of(&mut self, option: &str) -> Option<&mut Option<f64>> {
+        match option {
+            "material" => Some(&mut self.material),
+            "thickness" => Some(&mut self.thickness),
+            "across" => Some(&mut self.across),
+            "clearance" => Some(&mut self.clearance),
+            "max-radius" => Some(&mut self.max_radius),
+            "max-added" => Some(&mut self.max_added),
+            "max-inertia" => Some(&mut self.max_inertia),
+            _ => None,
+        }
+    }
+
     /// Returns the brief of a machine's file, overruled by the arguments.
     pub fn brief(&self, machine: &Machine, own: &DesignBrief) -> DesignBrief {
         let mut brief = own.clone();
@@ -470,14 +515,20 @@ fn objective(text: &str) -> Result<Objective, String> {
 }
 
 /// Columns of the table of a Pareto front.
-pub const FRONT_HEADINGS: [&str; 5] = ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m"];
+pub const FRONT_HEADINGS: [&str; 6] = ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m", "gap"];
 
 /// Returns the cells of one machine of a Pareto front.
-pub fn front_cells(point: &FrontPoint) -> [String; 5] {
+pub fn front_cells(point: &FrontPoint) -> [String; 6] {
     let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed_or_finer(x, 6));
-    let FrontPoint { added_mass, inertia, torque, workspace, residual_if_misplaced } = *point;
+    let FrontPoint { added_mass, inertia, torque, workspace, residual_if_misplaced, gap, certified } = *point;
     let [added_mass, inertia, off_by] = [added_mass, inertia, residual_if_misplaced].map(|x| fixed_or_finer(x, 6));
-    [added_mass, inertia, or_none(torque), or_none(workspace), off_by]
+    [added_mass, inertia, or_none(torque), or_none(workspace), off_by, gap_cell(gap, certified)]
+}
+
+/// Returns the gap to the minimum, and whether it is certified.
+pub fn gap_cell(gap: Option<f64>, certified: bool) -> String {
+    let mark = if certified { "" } else { ", not certified" };
+    gap.map_or_else(|| "–".into(), |gap| format!("{gap:.1e}{mark}"))
 }
 
 /// Formats the report as text.
