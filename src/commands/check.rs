@@ -15,6 +15,7 @@ use stillbase_study::counterweights::{CounterweightNumbers, all_numbers};
 use stillbase_study::layers::{Clash, LayersRequest, NoLayers, find_contacts};
 use stillbase_study::parts::{LinkParts, PartRow};
 
+use super::check_assembly;
 use super::failure::Failure;
 use super::input::MachineArgument;
 use super::output::{Format, TextTable, yes};
@@ -22,6 +23,8 @@ use super::strict::Strict;
 use stillbase_settings::number::{fixed, fixed_or_finer};
 
 /// Say whether a machine is force balanced and its mass matrix invariant, Eqs (7), (8)
+///
+/// Of an assembly it says which blocks react while they hold their b, and why.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -146,6 +149,9 @@ fn heights_lines(clashes: Option<&Result<Vec<Clash>, NoLayers>>) -> String {
 impl CheckArguments {
     /// Prints the verdict; a machine that is not balanced is no failure.
     pub fn run(&self) -> Result<(), Failure> {
+        if let Some(assembly) = self.machine.assembly_file()? {
+            return check_assembly::check(&assembly, &self.format, &self.strict);
+        }
         let found = self.machine.find().map_err(|why| self.machine.incomplete_drawing().unwrap_or(why))?;
         let (machine, floats) = (found.machine, found.base.is_some());
         let (inertia, constant) = (Inertia::of(&machine), PoseConstant::of(&machine));

@@ -10,6 +10,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stillbase_files::table::{NoTable, TABLE_ENDINGS, Table};
 use stillbase_files::text::STANDARD_INPUT;
 use stillbase_files::{FoundMachine, scenario_on_free_base};
+use stillbase_mechanics::assembly::Assembly;
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
@@ -24,7 +25,7 @@ use stillbase_session::{
 use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::number::counted;
-use stillbase_settings::range::Range;
+use stillbase_settings::range::{Range, shortened};
 use stillbase_settings::text::{MAX_TEXT_BYTES, shell_word};
 use stillbase_settings::word::Choice;
 use stillbase_simulation::plant::BaseKind;
@@ -174,6 +175,48 @@ impl MachineArgument {
     pub fn find(&self) -> Result<FoundMachine, Failure> {
         let found = found_machine(&self.name)?;
         Ok(FoundMachine { machine: self.settings.apply(found.machine)?, ..found })
+    }
+
+    /// Returns the assembly that the argument names, with its settings changed; a machine is an assembly of one block.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load), or as [`assembly_file`](Self::assembly_file).
+    pub fn load_assembly(&self) -> Result<Assembly, Failure> {
+        match self.assembly_file()? {
+            Some(assembly) => Ok(assembly),
+            None => self.load().map(Assembly::from),
+        }
+    }
+
+    /// Returns the assembly that a file holds, with its settings changed; `None` if the argument is no such file. Settings
+    /// begin with the name of a block, as `wrist.payload.mass`.
+    ///
+    /// # Errors
+    /// If the file or a setting is wrong, or a setting names no block.
+    pub fn assembly_file(&self) -> Result<Option<Assembly>, Failure> {
+        let Some(mut assembly) = stillbase_files::assembly(&self.name)? else { return Ok(None) };
+        let block_of = |key: &str| key.split_once('.').map_or("", |(block, _)| block).to_owned();
+        let names: Vec<String> = assembly.blocks().iter().map(|block| block.name.clone()).collect();
+        for (key, value) in &self.settings.pairs {
+            let wrong = |why: String| Failure::wrong_input(format!("--set {key}: {why}"));
+            if key == "gravity" {
+                let three: Vec<f64> = value.split(',').filter_map(|x| x.trim().parse().ok()).collect();
+                let three: Option<[f64; 3]> = three.try_into().ok().filter(|_| value.split(',').count() == 3);
+                let want = || wrong(format!("{}: want x,y,z of the assembly in m/s²", shortened(value, 80)));
+                assembly.set_gravity(three.ok_or_else(want)?).map_err(|why| wrong(why.to_string()))?;
+            } else if !names.contains(&block_of(key)) {
+                let (first, all) = (names.first().map_or("BLOCK", String::as_str), names.join(", "));
+                return Err(wrong(format!("want the name of a block before it, one of {all}, as {first}.{key}")));
+            } else if key.ends_with(".gravity") {
+                return Err(wrong("want gravity=x,y,z of the whole assembly".into()));
+            }
+        }
+        let changed = assembly.with_machines(|name, machine| {
+            let own = self.settings.pairs.iter().filter(|(key, _)| block_of(key) == name);
+            let pairs = own.map(|(key, value)| (key[name.len() + 1..].to_owned(), value.clone())).collect();
+            Settings { pairs }.apply(machine).map_err(|why| why.with_context(format!("block {name}")))
+        })?;
+        Ok(Some(changed))
     }
 
     /// Returns the name or file of the machine, as given.

@@ -6,6 +6,7 @@
 //! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
 
 mod check;
+mod check_assembly;
 mod compare;
 mod completions;
 mod design;
@@ -75,6 +76,7 @@ pub use open::OpenArguments;
 pub use program::{Arguments, name_commit};
 
 use failure::Failure;
+use stillbase_study::assembly_check::AssemblyReport;
 use stillbase_study::centres::{DesignReport, RebalanceReport};
 use stillbase_study::counterweights::CounterweightReport;
 use stillbase_study::equations::StatedEquations;
@@ -130,7 +132,7 @@ subcommands! {
     Joints: joints::JointsArguments => [JointReport],
     Machines: machines::MachinesArguments => [machines::Answer],
     Keys: keys::KeysArguments => [keys::Answer],
-    Check: check::CheckArguments => [check::Answer],
+    Check: check::CheckArguments => [check::Answer, AssemblyReport],
     Learn: learn::LearnArguments => [StatedEquations],
     Design: design::DesignArguments => [DesignReport, RebalanceReport, CounterweightReport, design::FrontsAnswer, design::VariedAnswer],
     Layers: layers::LayersArguments => [LayersReport],

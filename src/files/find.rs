@@ -9,6 +9,7 @@ use super::recorded_case::RecordedCase;
 use super::recorded_case::is_recording;
 use super::text::{STANDARD_INPUT, read};
 use stillbase_exchange::import::{ImportedMachine, faults, import};
+use stillbase_mechanics::assembly::{self, Assembly};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
 use stillbase_session::gentle_motion;
@@ -19,6 +20,9 @@ use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
 use stillbase_simulation::plant::{Base, BaseKind};
+
+const IS_ASSEMBLY: &str =
+    "this is an assembly of several machines: want one machine; check and dynamics take an assembly, too";
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
@@ -105,6 +109,7 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
                     machine_of(&found?.scenario, &file)
                 }
                 Some(FileContent::Scenario) => MachineFile::parse(&text, &file).map(own).map_err(|_| other(file)),
+                Some(FileContent::Assembly) => Err(wrong_file(&file, Faults::one(whole_file(IS_ASSEMBLY)))),
                 _ => MachineFile::parse(&text, &file).map(own),
             }
         }
@@ -117,6 +122,19 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
         }
         Err(source) => Err(FileError::Unreadable { file, source }),
     }
+}
+
+/// Returns the assembly that a file holds; `None` for anything else. A machine file that it names is resolved in its
+/// folder.
+///
+/// # Errors
+/// If the file describes an assembly that is wrong.
+pub fn assembly(name: &str) -> Result<Option<Assembly>, FileError> {
+    let file = Path::new(name);
+    // What is no text, or is not there, is told by the reader of machines.
+    let text = if known_machine(name).is_some() { None } else { read(file).ok() };
+    let Some(text) = text.filter(|text| content(text) == Some(FileContent::Assembly)) else { return Ok(None) };
+    assembly::parse(&text, &shortened(label(name), 300), &|name| machine(name, file.parent())).map(Some)
 }
 
 /// Returns a machine that everyone has: a built-in one, or that of a template for drawings.

@@ -3,6 +3,7 @@
 //! Others reach this crate as `stillbase::mechanics`; `stillbase` alone follows semantic versioning.
 
 pub mod arm_on_base;
+pub mod assembly;
 pub mod balance;
 pub mod counterweights;
 pub mod dynamics;

@@ -6,6 +6,7 @@
 //! Others reach this crate as `stillbase::study`; `stillbase` alone follows semantic versioning.
 
 pub mod advice;
+pub mod assembly_check;
 pub mod balance_constants;
 pub mod base_spectrum;
 pub mod centres;

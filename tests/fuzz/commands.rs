@@ -4,7 +4,8 @@ use clap::Parser;
 use stillbase::files::row_file::RowForm;
 use stillbase::files::shards::{ShardHeader, StudyId, Writer, merge};
 use stillbase::files::table::{Table, motions, samples};
-use stillbase::mechanics::machine::builtin;
+use stillbase::mechanics::assembly::{Assembly, parse as parse_assembly};
+use stillbase::mechanics::machine::{builtin, named};
 use stillbase::session::scenario::Scenario;
 use stillbase::study::trim::{MeasurementSet, Regressor, adopt_parameters, fit, identified_machine, next_excitation};
 
@@ -167,16 +168,23 @@ fn measurements_as_csv() {
 fn states() {
     const GOOD: &str = "[{\"q\": [1.7, 3.7, 2.2], \"qd\": [0.1, -0.2, 0.3], \"qdd\": [0, 1e-3, -2]},\n\
                         {\"q\": [0, 1, 2], \"qd\": [0, 0, 0], \"qdd\": [0, 0, 0]}]\n";
-    let machine = builtin("nine-link").expect("built in");
-    fuzz("states", &bytes(&[GOOD]), 300, |bytes, _| {
-        match dynamics::states_in(&String::from_utf8_lossy(bytes), "in.json", machine) {
-            Ok(states) => match states.iter().flatten().flat_map(|v| v.iter()).all(|x| x.is_finite()) {
-                true => Ok(()),
-                false => Err("a state that is not finite".into()),
-            },
-            Err(failure) => said(&failure),
-        }
-    });
+    const BLOCKS: &str =
+        "[{\"a\": [[1.7, 3.7, 2.2], [0.1, -0.2, 0.3], [0, 1e-3, -2]], \"b\": [[1, 2], [0, 0], [0, 0]]}]\n";
+    let alone = Assembly::from(builtin("nine-link").expect("built in").clone());
+    let text = "kind = \"assembly\"\nname = \"two\"\n[[block]]\nname = \"a\"\nmachine = \"nine-link\"\n[[block]]\n\
+                name = \"b\"\nmachine = \"two-drive\"\n";
+    let two = parse_assembly(text, "two", &named).expect("an assembly");
+    for (name, good, assembly) in [("states", GOOD, &alone), ("blocks", BLOCKS, &two)] {
+        fuzz(name, &bytes(&[good]), 300, |bytes, _| {
+            match dynamics::states_in(&String::from_utf8_lossy(bytes), "in.json", assembly) {
+                Ok(states) => {
+                    let all = states.iter().flatten().flat_map(|s| [&*s.q.0, &*s.qd, &*s.qdd].concat());
+                    if all.into_iter().all(f64::is_finite) { Ok(()) } else { Err("a state that is not finite".into()) }
+                }
+                Err(failure) => said(&failure),
+            }
+        });
+    }
 }
 
 #[test]

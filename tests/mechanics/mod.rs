@@ -1,6 +1,7 @@
 //! Tests of `src/mechanics`: machines, kinematics, dynamics, pin forces and balance.
 
 pub mod arm_on_base;
+mod assembly;
 mod balance;
 mod bodies;
 mod breakdown;

@@ -84,6 +84,16 @@ impl AxialMoments {
         }
     }
 
+    /// Returns S, the first moment along the axis, kg m.
+    pub fn total(&self) -> f64 {
+        self.total
+    }
+
+    /// Returns s_k, the first moments of the drives weighted with the heights, kg m².
+    pub fn weighted(&self) -> &[Vector; MAX_DRIVES] {
+        &self.s
+    }
+
     /// Returns whether all heights are zero, the default in a machine file; then n_t = 0.
     pub fn is_flat(&self) -> bool {
         self.flat

@@ -102,16 +102,21 @@ pub enum FileContent {
     Machine,
     /// A scenario, with its machine.
     Scenario,
+    /// Several machines on one base.
+    Assembly,
 }
 
-/// Returns whether a file is a machine or a scenario, by tables that only one of them has. Returns `None` if it has
-/// tables of neither or of both, or is not TOML.
+/// Returns whether a file is a machine, a scenario or an assembly, by tables that only one of them has. Returns `None` if
+/// it has tables of none or of several, or is not TOML.
 pub fn content(text: &str) -> Option<FileContent> {
     let table: toml::Table = text.parse().ok()?;
     let has = |keys: [&str; 2]| keys.iter().any(|key| table.contains_key(*key));
-    match (has(["link", "drive"]), has(["task", "machine"])) {
-        (true, false) => Some(FileContent::Machine),
-        (false, true) => Some(FileContent::Scenario),
+    let is_assembly =
+        table.contains_key("block") || table.get("kind").is_some_and(|kind| kind.as_str() == Some("assembly"));
+    match (has(["link", "drive"]), has(["task", "machine"]), is_assembly) {
+        (true, false, false) => Some(FileContent::Machine),
+        (false, true, false) => Some(FileContent::Scenario),
+        (false, false, true) => Some(FileContent::Assembly),
         _ => None,
     }
 }

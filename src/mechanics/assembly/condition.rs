@@ -1,0 +1,117 @@
+//! Why the blocks of an assembly react, and where.
+//!
+//! # Symbols
+//! | letter | meaning | unit |
+//! |---|---|---|
+//! | m_c, o, h_c | mass that a block carries, its centre of mass from the end effector: in the plane, and along z | kg, m |
+//! | p_k | weights of the end effector: it is at Σ p_k e(q_k) | m |
+//! | C_0k | coupling of a body that keeps its orientation: m_c conj(o) p_k | kg m² |
+//!
+//! # Conditions
+//! A block that holds its b puts nothing on the base if, with the carried mass at its end effector, g_k = 0 (7), C_kl = 0
+//! (8), C_0k = 0, and for the moments that tilt the base Σ m h a_k = 0 for each drive.
+
+use nalgebra::Vector3;
+
+use super::model::Assembly;
+use crate::machine::{BALANCE_TOLERANCE, Inertia};
+use crate::planar::Vector;
+
+/// Mass that is carried off the end effector of its carrier.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarriedOffset {
+    /// m_c, kg.
+    pub mass: f64,
+    /// o, m, in the plane of the carrier.
+    pub beside: Vector,
+    /// Height above the end effector, along z of the carrier, m.
+    pub above: f64,
+}
+
+/// What keeps a block from being silent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockConditions {
+    /// What it carries.
+    pub carried: CarriedOffset,
+    /// The machine with the carried mass at its end effector.
+    pub inertia: Inertia,
+    /// Largest |g_k|, kg m.
+    pub force: f64,
+    /// Largest |C_kl|, k ≠ l, kg m².
+    pub coupling: f64,
+    /// Largest |C_0k|, kg m².
+    pub ground: f64,
+    /// Largest |Σ m h a_k| about the height of the centre of mass, kg m².
+    pub tilt: f64,
+}
+
+/// A reason why a block reacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reacting {
+    /// Its centre of mass moves.
+    Force,
+    /// Its mass matrix depends on the pose.
+    Coupling,
+    /// What it carries is off its end effector.
+    Ground,
+    /// Its bodies are at different heights.
+    Tilt,
+}
+
+impl BlockConditions {
+    /// Returns why the block reacts although it holds its b; nothing if it is silent.
+    pub fn reasons(&self) -> impl Iterator<Item = Reacting> {
+        let Inertia { mass, .. } = self.inertia;
+        let squared = BALANCE_TOLERANCE * self.inertia.diagonals().iter().sum::<f64>();
+        let first = (BALANCE_TOLERANCE * squared * mass).sqrt();
+        [
+            (Reacting::Force, self.force > first),
+            (Reacting::Coupling, self.coupling > squared),
+            (Reacting::Ground, self.ground > squared),
+            (Reacting::Tilt, self.tilt > squared),
+        ]
+        .into_iter()
+        .filter_map(|(why, is_so)| is_so.then_some(why))
+    }
+}
+
+impl Assembly {
+    /// Returns the first moment of all that sits on the platform of a block, about its end effector, kg m, in axes of the
+    /// base. It does not move if all that is carried is force balanced.
+    fn moment_above(&self, block: usize) -> Vector3<f64> {
+        let of = |i: usize| {
+            let own = &self.blocks()[i];
+            let up = own.mount.axes.column(2).into_owned();
+            let above = own.platform_height() * (self.mass_above(i) - own.inertia.mass());
+            self.mass_above(i) * own.mount.at + up * (own.axial.total() + above) + self.moment_above(i)
+        };
+        self.carried_by(Some(block)).map(of).sum()
+    }
+
+    /// Returns what keeps a block from being silent.
+    pub fn conditions(&self, block: usize) -> BlockConditions {
+        let own = &self.blocks()[block];
+        let mass = self.mass_above(block) - own.inertia.mass();
+        let moment = self.moment_above(block);
+        let mut inertia = own.inertia.clone();
+        let tip = inertia.end_effector.map(|p| Vector::new(p, 0.0));
+        let held_by = own.machine.resolved_links()[own.machine.end_link()].drive;
+        inertia.add(mass, 0.0, held_by, &tip);
+        let (beside, along) = (own.mount.in_plane(&moment), own.mount.axes.column(2).dot(&moment));
+        let height = own.platform_height() * mass + along;
+        let mean = (own.axial.total() + height) / inertia.mass.max(f64::MIN_POSITIVE);
+        let most = |of: &dyn Fn(usize) -> f64| (0..inertia.drives).map(of).fold(0.0, f64::max);
+        BlockConditions {
+            carried: CarriedOffset {
+                mass,
+                beside: if mass > 0.0 { beside / mass } else { Vector::default() },
+                above: if mass > 0.0 { along / mass } else { 0.0 },
+            },
+            force: inertia.force_residual(),
+            coupling: inertia.invariance_residual(),
+            ground: most(&|k| (beside.conj() * tip[k]).norm()),
+            tilt: most(&|k| (own.axial.weighted()[k] + height * tip[k] - mean * inertia.g[k]).norm()),
+            inertia,
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Files of assemblies.
+
+use serde::{Deserialize, Serialize};
+
+use super::model::{Assembly, AssemblyError};
+use super::words::AssemblyWords;
+use crate::machine::{FileError, FirstProblem, Machine, MachineError, parse_with};
+use stillbase_settings::mending::{Problem, Wrong};
+use stillbase_settings::stated::StatedFile;
+
+/// The content of an assembly file. [`Assembly::new`] checks it.
+///
+/// ```toml
+/// kind = "assembly"
+/// name = "two-arms"
+///
+/// [[block]]
+/// name = "left"
+/// machine = "nine-link"       # a built-in machine, or a file beside this one
+///
+/// [[block]]
+/// name = "right"
+/// machine = "nine-link"
+/// at = [0.9, 0.0, 0.1]        # m, from what it sits on
+/// x = [0, 0, 1]               # directions of its plane, from the base
+/// y = [1, 0, 0]
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AssemblySpec {
+    /// Always `"assembly"`.
+    pub kind: AssemblyKind,
+    /// Short name.
+    pub name: String,
+    /// Summary in one line.
+    #[serde(default)]
+    pub summary: String,
+    /// Acceleration of gravity in axes of the base, m/s².
+    #[serde(default)]
+    pub gravity: [f64; 3],
+    /// The machines.
+    #[serde(default, rename = "block")]
+    pub blocks: Vec<BlockSpec>,
+}
+
+/// The word by which a file is one of an assembly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AssemblyKind {
+    /// Several machines.
+    #[default]
+    Assembly,
+}
+
+/// A machine of an assembly.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockSpec {
+    /// Its name in the assembly.
+    pub name: String,
+    /// Name or file of the machine.
+    pub machine: String,
+    /// `"base"`, or the block on whose platform it sits.
+    #[serde(default = "base")]
+    pub on: String,
+    /// Its place from the origin of the base or from the end effector of the block below, m, in axes of the base.
+    #[serde(default)]
+    pub at: [f64; 3],
+    /// Direction of the x axis of its plane, in axes of the base.
+    #[serde(default = "first")]
+    pub x: [f64; 3],
+    /// Direction of the y axis of its plane, at a right angle to x.
+    #[serde(default = "second")]
+    pub y: [f64; 3],
+}
+
+fn base() -> String {
+    "base".into()
+}
+
+fn first() -> [f64; 3] {
+    [1.0, 0.0, 0.0]
+}
+
+fn second() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+/// Looks up a machine by name or file.
+pub type FindMachine<'a> = &'a dyn Fn(&str) -> Result<Machine, FileError>;
+
+/// Reads an assembly from text; `file` is the name used in errors.
+///
+/// # Errors
+/// If the text describes no assembly; the error has all faults of the text.
+pub fn parse(text: &str, file: &str, find: FindMachine<'_>) -> Result<Assembly, FileError> {
+    parse_with(text, file, &AssemblyWords, &|stated| read(stated, find))
+}
+
+fn read(file: &StatedFile, find: FindMachine<'_>) -> Result<Assembly, FirstProblem> {
+    let problem = |problem: Problem| {
+        let text = problem.text(&AssemblyWords);
+        Box::new((problem, MachineError::Syntax(text)))
+    };
+    let spec: AssemblySpec = file.read().map_err(|error| problem(Problem::of(file, &error)))?;
+    Assembly::new(&spec, find).map_err(|AssemblyError { place, said, known }| {
+        let wrong = if known.is_empty() { Wrong::Value(said) } else { Wrong::Name(said, known) };
+        problem(Problem { path: place, wrong })
+    })
+}
