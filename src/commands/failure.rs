@@ -17,8 +17,9 @@ use stillbase_planning::pose_constant::Unreachable;
 use stillbase_planning::pose_space::{NoPoseSpace, PlaneError};
 use stillbase_planning::timing::TimeError;
 use stillbase_session::scenario::{Scenario, ScenarioError};
-use stillbase_session::{Proposal, Refusal, proposals};
+use stillbase_session::{Proposal, Refusal, WayOut, proposals};
 use stillbase_settings::fault::Faults;
+use toml::{Table, Value};
 
 use stillbase_study::layers::NoLayers;
 
@@ -88,6 +89,29 @@ impl Failure {
         let proposals = proposals(scenario, &refusal);
         let failure = Self::from(refusal).with_context(&scenario.name);
         Self::Refused(Box::new(RefusedScenario::of(failure, proposals)))
+    }
+
+    /// Returns the failure of one of several blocks: ways out are keys of the block. Those that change what it holds, or
+    /// that are no settings, are left out.
+    #[must_use]
+    pub fn of_block(self, block: &str) -> Self {
+        let Self::Refused(refused) = self else { return self };
+        let of_block = |Proposal { text, way }: Proposal| {
+            let WayOut::Set(settings) = way else { return None };
+            let own = settings.into_iter().map(|(key, value)| {
+                let inner = Table::from_iter([(block.to_owned(), value.clone())]);
+                match key.as_str() {
+                    "task" => Some((key, Value::Table(inner))),
+                    "limits" | "drive" => Some((block.to_owned(), Value::Table(Table::from_iter([(key, value)])))),
+                    _ => None,
+                }
+            });
+            let settings = own.collect::<Option<Table>>()?;
+            Some(Proposal { text, way: WayOut::Set(settings) })
+        };
+        let proposals = refused.proposals.into_iter().filter_map(of_block).collect();
+        let failure = refused.failure.worded(&|why| format!("block {why}"));
+        Self::Refused(Box::new(RefusedScenario { failure, proposals, ..*refused }))
     }
 
     /// Returns the failure with a word of the command line that names nothing.

@@ -16,6 +16,7 @@ use stillbase_mechanics::planar::Vector;
 use stillbase_mechanics::sketch::{Missing, resolve};
 use stillbase_planning::pose_constant::PoseConstant;
 use stillbase_planning::pose_space::PoseSpace;
+use stillbase_session::assembly::AssemblyScenario;
 use stillbase_session::scenario::{
     DesignBrief, MachineFile, POINT_RANGE, POSE_CONSTANT_RANGE, Scenario, Task, TaskChange, key_of,
 };
@@ -92,6 +93,34 @@ impl Settings {
             Some((key, _)) => Err(no_use(key, key_of(key).map_or("", |key| key.when)).with_context("--set")),
             None => Ok(machine),
         }
+    }
+
+    /// Returns an assembly with settings of its blocks changed, as `wrist.payload.mass`, or its `gravity`.
+    ///
+    /// # Errors
+    /// If a setting is wrong, or names no block.
+    fn apply_to_assembly(&self, mut assembly: Assembly) -> Result<Assembly, Failure> {
+        let block_of = |key: &str| key.split_once('.').map_or("", |(block, _)| block).to_owned();
+        let names: Vec<String> = assembly.blocks().iter().map(|block| block.name.clone()).collect();
+        for (key, value) in &self.pairs {
+            let wrong = |why: String| Failure::wrong_input(format!("--set {key}: {why}"));
+            if key == "gravity" {
+                let three: Vec<f64> = value.split(',').filter_map(|x| x.trim().parse().ok()).collect();
+                let three: Option<[f64; 3]> = three.try_into().ok().filter(|_| value.split(',').count() == 3);
+                let want = || wrong(format!("{}: want x,y,z of the assembly in m/s²", shortened(value, 80)));
+                assembly.set_gravity(three.ok_or_else(want)?).map_err(|why| wrong(why.to_string()))?;
+            } else if !names.contains(&block_of(key)) {
+                let (first, all) = (names.first().map_or("BLOCK", String::as_str), names.join(", "));
+                return Err(wrong(format!("want the name of a block before it, one of {all}, as {first}.{key}")));
+            } else if key.ends_with(".gravity") {
+                return Err(wrong("want gravity=x,y,z of the whole assembly".into()));
+            }
+        }
+        assembly.with_machines(|name, machine| {
+            let own = self.pairs.iter().filter(|(key, _)| block_of(key) == name);
+            let pairs = own.map(|(key, value)| (key[name.len() + 1..].to_owned(), value.clone())).collect();
+            Self { pairs }.apply(machine).map_err(|why| why.with_context(format!("block {name}")))
+        })
     }
 
     /// Refuses settings of tolerances, which have no effect in a command that samples no machines.
@@ -194,29 +223,8 @@ impl MachineArgument {
     /// # Errors
     /// If the file or a setting is wrong, or a setting names no block.
     pub fn assembly_file(&self) -> Result<Option<Assembly>, Failure> {
-        let Some(mut assembly) = stillbase_files::assembly(&self.name)? else { return Ok(None) };
-        let block_of = |key: &str| key.split_once('.').map_or("", |(block, _)| block).to_owned();
-        let names: Vec<String> = assembly.blocks().iter().map(|block| block.name.clone()).collect();
-        for (key, value) in &self.settings.pairs {
-            let wrong = |why: String| Failure::wrong_input(format!("--set {key}: {why}"));
-            if key == "gravity" {
-                let three: Vec<f64> = value.split(',').filter_map(|x| x.trim().parse().ok()).collect();
-                let three: Option<[f64; 3]> = three.try_into().ok().filter(|_| value.split(',').count() == 3);
-                let want = || wrong(format!("{}: want x,y,z of the assembly in m/s²", shortened(value, 80)));
-                assembly.set_gravity(three.ok_or_else(want)?).map_err(|why| wrong(why.to_string()))?;
-            } else if !names.contains(&block_of(key)) {
-                let (first, all) = (names.first().map_or("BLOCK", String::as_str), names.join(", "));
-                return Err(wrong(format!("want the name of a block before it, one of {all}, as {first}.{key}")));
-            } else if key.ends_with(".gravity") {
-                return Err(wrong("want gravity=x,y,z of the whole assembly".into()));
-            }
-        }
-        let changed = assembly.with_machines(|name, machine| {
-            let own = self.settings.pairs.iter().filter(|(key, _)| block_of(key) == name);
-            let pairs = own.map(|(key, value)| (key[name.len() + 1..].to_owned(), value.clone())).collect();
-            Settings { pairs }.apply(machine).map_err(|why| why.with_context(format!("block {name}")))
-        })?;
-        Ok(Some(changed))
+        let Some(assembly) = stillbase_files::assembly(&self.name)? else { return Ok(None) };
+        self.settings.apply_to_assembly(assembly).map(Some)
     }
 
     /// Returns the name or file of the machine, as given.
@@ -281,6 +289,18 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
     let found = stillbase_files::found_machine(name)?;
     report_left_out(name, &found.left_out);
     Ok(found)
+}
+
+/// Returns the scenario of an assembly that a file holds, with settings changed; `None` for anything else. Settings are
+/// those of the file, as `task.wrist.b`, or of a block, as `wrist.payload.mass`.
+///
+/// # Errors
+/// If the file, its assembly or a setting is wrong.
+pub fn assembly_scenario(name: &str, settings: &Settings) -> Result<Option<AssemblyScenario>, Failure> {
+    let is_of_file = |key: &str| ["task", "base", "step", "duration"].contains(&key.split('.').next().unwrap_or(key));
+    let [of_file, of_blocks] = [true, false].map(|wanted| settings.of_keys(|key| is_of_file(key) == wanted));
+    let apply = |assembly| of_blocks.apply_to_assembly(assembly);
+    stillbase_files::assembly_scenario(name, &of_file.change(), apply)
 }
 
 /// Returns a scenario by name or file, with settings changed, whose base floats.

@@ -59,6 +59,7 @@ mod schema;
 mod signal_choice;
 mod signal_source;
 mod simulate;
+mod simulate_assembly;
 mod sites;
 #[cfg(any(feature = "record", feature = "ui"))]
 mod size;
@@ -123,7 +124,7 @@ macro_rules! subcommands {
 subcommands! {
     #[cfg(feature = "record")]
     Headless: headless::HeadlessArguments => [headless::Answer],
-    Simulate: simulate::SimulateArguments => [simulate::Answer],
+    Simulate: simulate::SimulateArguments => [simulate::Answer, simulate_assembly::AssemblyAnswer],
     #[cfg(feature = "record")]
     Replay: replay::ReplayArguments => [replay::Answer],
     Diff: diff::DiffArguments => [diff::Answer],

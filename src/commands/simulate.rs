@@ -19,7 +19,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
 use super::in_process::{is_in_process, take};
-use super::input::{DEFAULT_SCENARIO, Settings, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, assembly_scenario, scenario};
 use super::output::{Format, TextTable, check_size};
 use super::rows::{RowTarget, Rows};
 use super::signal_choice::SignalChoice;
@@ -41,23 +41,23 @@ pub struct SimulateArguments {
     /// Write the rows to this file, .csv or .parquet; by default CSV goes to standard output, but a terminal gets a
     /// summary instead
     #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long)]
-    force: bool,
+    pub(super) force: bool,
     /// Print only every N-th step, and the last one
     #[arg(long, value_name = "N", default_value = "1", value_parser = every)]
-    every: NonZeroU64,
+    pub(super) every: NonZeroU64,
     #[command(flatten)]
-    choice: SignalChoice,
+    pub(super) choice: SignalChoice,
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
-    strict: Strict,
+    pub(super) strict: Strict,
     #[command(flatten)]
-    form: FileForm,
+    pub(super) form: FileForm,
     #[command(flatten)]
-    format: Format,
+    pub(super) format: Format,
 }
 
 fn every(text: &str) -> Result<NonZeroU64, String> {
@@ -186,7 +186,7 @@ pub struct Answer {
 }
 
 /// A JSON object whose keys keep their order.
-struct Columns<T>(Vec<(String, T)>);
+pub(super) struct Columns<T>(pub(super) Vec<(String, T)>);
 
 impl<T: JsonSchema> JsonSchema for Columns<T> {
     fn schema_name() -> Cow<'static, str> {
@@ -207,6 +207,9 @@ impl<T: Serialize> Serialize for Columns<T> {
 impl SimulateArguments {
     /// Simulates the scenario. Writes its signals as CSV or Parquet, or prints them as JSON, or prints a summary.
     pub fn run(&self) -> Result<(), Failure> {
+        if let Some(scenario) = assembly_scenario(&self.scenario, &self.settings)? {
+            return self.run_assembly(&scenario);
+        }
         let scenario = scenario(&self.scenario, &self.settings)?;
         // The first edits may draw another machine.
         let (start, _) = with_start_edits(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
@@ -292,7 +295,7 @@ impl SimulateArguments {
     }
 
     /// Whether rows are written: to a file, or without --json to standard output if it is not a terminal.
-    fn writes_csv(&self) -> bool {
+    pub(super) fn writes_csv(&self) -> bool {
         self.output.is_some() || self.form.is_given() || !(self.format.json || std::io::stdout().is_terminal())
     }
 

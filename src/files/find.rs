@@ -12,9 +12,11 @@ use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::assembly::{self, Assembly};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
+use stillbase_session::assembly::AssemblyScenario;
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::{DesignBrief, FileContent, MachineFile, Scenario, ScenarioError, TaskKind, content};
 use stillbase_session::with_start_edits;
+use stillbase_settings::change;
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
@@ -22,7 +24,7 @@ use stillbase_settings::spelling::UnknownName;
 use stillbase_simulation::plant::{Base, BaseKind};
 
 const IS_ASSEMBLY: &str =
-    "this is an assembly of several machines: want one machine; check and dynamics take an assembly, too";
+    "this is an assembly of several machines: want one machine; check, dynamics and simulate take an assembly, too";
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
@@ -135,6 +137,30 @@ pub fn assembly(name: &str) -> Result<Option<Assembly>, FileError> {
     let text = if known_machine(name).is_some() { None } else { read(file).ok() };
     let Some(text) = text.filter(|text| content(text) == Some(FileContent::Assembly)) else { return Ok(None) };
     assembly::parse(&text, &shortened(label(name), 300), &|name| machine(name, file.parent())).map(Some)
+}
+
+/// Returns the scenario of an assembly that a file holds, with keys of the file changed, and the assembly by `apply`; `None`
+/// for anything else. Files that it names are resolved in the folders of those that name them.
+///
+/// # Errors
+/// If the scenario or its assembly is wrong, or that of `apply`.
+pub fn assembly_scenario<E: From<ScenarioError>>(
+    name: &str,
+    change: &toml::Table,
+    apply: impl FnOnce(Assembly) -> Result<Assembly, E>,
+) -> Result<Option<AssemblyScenario>, E> {
+    let file = Path::new(name);
+    let text = if Scenario::builtin(name).is_some() { None } else { read(file).ok() };
+    let table: Option<toml::Table> = text.as_ref().and_then(|text| text.parse().ok());
+    let Some((text, table)) = text.zip(table) else { return Ok(None) };
+    let Some(machine) = table.get("machine").and_then(toml::Value::as_str) else { return Ok(None) };
+    let beside = file.parent().map_or_else(|| machine.into(), |folder| folder.join(machine));
+    let found = assembly(&beside.display().to_string()).map_err(ScenarioError::from)?;
+    let Some(found) = found else { return Ok(None) };
+    let assembly = apply(found)?;
+    // With settings, lines are no longer those of the file.
+    let text = if change.is_empty() { text } else { change::join(table, change).to_string() };
+    Ok(Some(AssemblyScenario::parse(&text, &shortened(label(name), 300), assembly)?))
 }
 
 /// Returns a machine that everyone has: a built-in one, or that of a template for drawings.

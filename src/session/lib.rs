@@ -2,6 +2,7 @@
 //!
 //! Others reach this crate as `stillbase::session`; `stillbase` alone follows semantic versioning.
 
+pub mod assembly;
 mod base_forecast;
 mod changes;
 mod changes_made;

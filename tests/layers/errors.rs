@@ -25,6 +25,7 @@ errors! {
     settings::quantity::QuantityError,
     mechanics::machine::FileError,
     mechanics::machine::MachineError,
+    mechanics::assembly::AssemblyError,
     mechanics::balance::DesignError,
     mechanics::balance::RebalanceError,
     mechanics::counterweights::CounterweightError,

@@ -86,7 +86,7 @@ type Moving = [Vector; 3];
 
 /// Returns Σ_k c_k e(q_k), with its time derivatives.
 #[inline]
-fn moving(c: impl Fn(usize) -> Vector, e: &UnitVectors, state: &BlockState) -> Moving {
+fn moving_sum(c: impl Fn(usize) -> Vector, e: &UnitVectors, state: &BlockState) -> Moving {
     let mut sum = [Vector::default(); 3];
     for k in 0..state.qd.len() {
         let (at, rate) = (c(k) * e[k], state.qd[k]);
@@ -127,11 +127,11 @@ impl MovingBlock {
         let e = state.q.units();
         let mut mount = below;
         mount[0] += block.mount.at;
-        let tip = moving(|k| Vector::new(block.inertia.end_effector[k], 0.0), &e, state);
+        let tip = moving_sum(|k| Vector::new(block.inertia.end_effector[k], 0.0), &e, state);
         let heights = [block.platform_height(), 0.0, 0.0];
         Self {
-            first: moving(|k| block.inertia.g[k], &e, state),
-            weighted: moving(|k| block.axial.weighted()[k], &e, state),
+            first: moving_sum(|k| block.inertia.g[k], &e, state),
+            weighted: moving_sum(|k| block.axial.weighted()[k], &e, state),
             platform: std::array::from_fn(|i| mount[i] + block.mount.in_space(tip[i], heights[i])),
             e,
             mount,
@@ -213,6 +213,25 @@ impl Assembly {
             }
         }
         sum
+    }
+
+    /// Returns Σ m |a| over the bodies of all blocks, N: what forces on the base are compared with.
+    ///
+    /// # Panics
+    /// If there are fewer states than blocks.
+    pub fn inertial_forces(&self, states: &[BlockState]) -> f64 {
+        let moving = self.moving(states);
+        let of = |((block, moving), state): ((&Block, &MovingBlock), &BlockState)| {
+            let machine = &block.machine;
+            let [_, _, pull] = moving.mount;
+            let body = |mass: f64, chain: &[Vector; MAX_DRIVES]| {
+                let [_, _, a] = moving_sum(|k| chain[k], &moving.e, state);
+                mass * (pull + block.mount.in_space(a, 0.0)).norm()
+            };
+            let links = machine.links().iter().enumerate().map(|(j, link)| body(link.mass, &machine.com_chain(j)));
+            links.sum::<f64>() + body(machine.spec().payload.mass, &machine.payload_chain())
+        };
+        self.blocks().iter().zip(&moving).zip(states).map(of).sum()
     }
 
     /// Returns the momentum of all blocks, as seen from the base.

@@ -1,0 +1,13 @@
+//! Scenarios of assemblies: each block has a task of its own, and all share one base.
+//!
+//! A block is planned as a machine by itself that holds what it carries, so tasks, time laws, limits and refusals are those
+//! of one machine. The blocks then follow their references without error; what they put on the base together is computed in
+//! space. Friction, feedback and payloads unknown to the model are left to scenarios of one machine.
+
+mod file;
+mod run;
+mod signals;
+
+pub use file::{AssemblyBase, AssemblyScenario, BlockTask};
+pub use run::{AssemblyFrame, AssemblyRun, AssemblyVerdict};
+pub use signals::{AssemblySignal, assembly_signals};
