@@ -92,6 +92,9 @@ fn print_faults(why: &str, file: &str, faults: &Faults) {
     faults.rest().into_iter().for_each(print_error);
 }
 
+/// Exit status of a command that was told to stop, as that of a program that an interrupt has ended.
+const STOPPED: u8 = 130;
+
 /// Maximum length of the name of a file in messages, characters.
 const MAX_FILE_NAME: usize = 300;
 
@@ -120,6 +123,7 @@ pub(super) fn status(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) 
     let (status, why) = match failure {
         Failure::NoAnswer(why) => (1, why),
         Failure::WrongInput(why) => (2, why),
+        Failure::Stopped => (STOPPED, "stopped before its end".into()),
         Failure::ReaderGone | Failure::Refused(_) => return 0,
         Failure::Told => return 1,
     };

@@ -12,6 +12,7 @@ mod dynamics;
 mod machine;
 mod run;
 mod steps;
+mod watched;
 
 use pyo3::prelude::*;
 

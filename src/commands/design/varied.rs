@@ -19,6 +19,7 @@ use super::super::dimensions::density;
 use super::super::failure::Failure;
 use super::super::file_form::FileForm;
 use super::super::output::TextTable;
+use super::super::progress::check;
 use super::super::rows::{RowTarget, Rows};
 use super::super::tolerance::parse_shard;
 use super::DesignArguments;
@@ -175,6 +176,7 @@ impl DesignArguments {
         let mut rows = target.map(|to| Rows::begin_with(&to, ("design", &words), &columns)).transpose()?;
         let (mut best, mut reasons, mut found, mut refused) = (Vec::<BestDesign>::new(), Vec::new(), 0, 0);
         for point in points.clone() {
+            check()?;
             let values = space.point(point);
             let texts = |outcome: String| {
                 let own = values.iter().zip(&numeric).filter(|(_, numeric)| !**numeric).map(|(value, _)| value.clone());
