@@ -171,7 +171,7 @@ impl SessionSource {
         }
         let note = recorded.map_or(note.clone(), |case| {
             let of = path.file_name().unwrap_or_default().to_string_lossy();
-            let difference = case.simulated_again(&scenario, &case.tolerances());
+            let difference = case.simulated_again(&scenario, &case.tolerances(), || true);
             let found = difference.map_or_else(|why| why.to_string(), |difference| difference.sentence(""));
             let found = format!("{of}, simulated again: {found}");
             Some(note.map_or(found.clone(), |note| format!("{found}; {note}")))

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::gallery::portrait_of;
 use stillbase_files::stamp::FileStamp;
 use stillbase_files::text::{names_in, read};
-use stillbase_picture::paint::portrait::Portrait;
+use stillbase_picture::scene::portrait::Portrait;
 use stillbase_query::{Queries, QuickQuery, QuickWork};
 use stillbase_session::scenario::{FileContent, Scenario, content};
 use stillbase_settings::text::shorten_message;

@@ -19,6 +19,7 @@ use super::input::{DEFAULT_SCENARIO, Settings, distinct_names, machine, scenario
 #[cfg(feature = "record")]
 use super::output::say_written;
 use super::output::{Format, TextTable};
+use super::progress::{check, goes_on};
 use super::rows::{RowTarget, Rows};
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{fixed, nine_digits};
@@ -75,7 +76,10 @@ impl CompareArguments {
         let ending = self.form.check_wanted(&self.format, output, self.force, &["csv", "parquet", "rrd"])?;
         let scenarios = self.scenarios()?;
         let mut runs = ComparisonTable::default();
-        scenarios.iter().for_each(|(way, scenario)| runs.run(*way, scenario));
+        for (way, scenario) in &scenarios {
+            runs.run(*way, scenario, &mut |_| goes_on());
+            check()?;
+        }
         let faults =
             || runs.rows().iter().filter_map(|row| Some((&row.name, row.outcome.as_ref().ok()?.fault.as_ref()?)));
         faults().for_each(|(name, fault)| print_message(format!("{name}: audit failed: {fault}")));

@@ -92,6 +92,9 @@ fn print_faults(why: &str, file: &str, faults: &Faults) {
     faults.rest().into_iter().for_each(print_error);
 }
 
+/// Exit status of a command that was told to stop, as that of a program that an interrupt has ended.
+const STOPPED: u8 = 130;
+
 /// Maximum length of the name of a file in messages, characters.
 const MAX_FILE_NAME: usize = 300;
 
@@ -120,6 +123,7 @@ pub(super) fn status(done: Result<(), Failure>, as_json: bool, line: &Line<'_>) 
     let (status, why) = match failure {
         Failure::NoAnswer(why) => (1, why),
         Failure::WrongInput(why) => (2, why),
+        Failure::Stopped => (STOPPED, "stopped before its end".into()),
         Failure::ReaderGone | Failure::Refused(_) => return 0,
         Failure::Told => return 1,
     };
@@ -191,7 +195,10 @@ pub(super) fn usage_status(error: &clap::Error, line: &Line<'_>) -> u8 {
                     format!("{}: no such command: want {} (nearest)", misnamed.given, misnamed.nearest.join(" or "));
                 Failure::WrongInput(format!("{why}; see --help")).with_misnamed(Some(misnamed))
             }
-            None => Failure::WrongInput(in_one_line(&error.render().to_string())).with_proposals(Vec::new()),
+            None => {
+                let why = unknown_command(line).unwrap_or_else(|| in_one_line(&error.render().to_string()));
+                Failure::WrongInput(why).with_proposals(Vec::new())
+            }
         },
     };
     status(Err(failure), as_json, line)
@@ -203,6 +210,20 @@ fn misspelt_command(error: &clap::Error, line: &Line<'_>) -> Option<Misnamed> {
     let first = line.words.get(1)?.to_str().filter(|first| is_taken && !first.starts_with('-'))?;
     let names = super::names();
     Misnamed::command(first, &names).filter(|misnamed| !misnamed.nearest.iter().any(|name| name == first))
+}
+
+/// Returns what is wrong with the name of a command. A program that carries out a command within itself opens no
+/// window, so its first word is never a scenario.
+fn unknown_command(line: &Line<'_>) -> Option<String> {
+    let names = super::names();
+    let first = line.words.get(1).map_or("".into(), |word| word.to_string_lossy());
+    let is_unknown = is_in_process() && !names.iter().any(|name| *name == first);
+    let given = if first.is_empty() || first.starts_with('-') {
+        "no command".into()
+    } else {
+        format!("{first}: no such command")
+    };
+    is_unknown.then(|| format!("{given}: want one of {}", names.join(", ")))
 }
 
 /// Returns the command line with the wrong word replaced by the nearest one that is allowed, if one is known.

@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::file_form::FileForm;
 use super::input::{Settings, scenario};
 use super::output::{Format, check_size};
+use super::progress::goes_on;
 use super::rows::{self, RowTarget};
 use super::simulate::require_audit;
 use super::strict::{Strict, run_faults};
@@ -221,6 +222,7 @@ impl ExportArguments {
                         .collect(),
                 );
             }
+            goes_on()
         })
         .map_err(|e| Failure::refused(scenario, e))?;
         let last = run.frame();

@@ -17,13 +17,14 @@ use stillbase_planning::pose_constant::Unreachable;
 use stillbase_planning::pose_space::{NoPoseSpace, PlaneError};
 use stillbase_planning::timing::TimeError;
 use stillbase_session::scenario::{Scenario, ScenarioError};
-use stillbase_session::{Proposal, Refusal, WayOut, proposals};
+use stillbase_session::{Proposal, Refusal, WayOut, proposals_while};
 use stillbase_settings::fault::Faults;
 use toml::{Table, Value};
 
 use stillbase_study::layers::NoLayers;
 
 use super::misnamed::Misnamed;
+use super::progress::goes_on;
 use super::remedy::option;
 
 /// Why a command did not finish.
@@ -33,6 +34,8 @@ pub enum Failure {
     ReaderGone,
     /// The answer on standard output says that something is not as it should be; there is nothing to add.
     Told,
+    /// The command was told to stop, and did.
+    Stopped,
     /// The question has no answer: the reason, and a similar question that has one.
     NoAnswer(String),
     /// The input is wrong: the place of the error, and the expected input.
@@ -86,7 +89,11 @@ impl Failure {
 
     /// Returns the failure of a refused scenario, with the name of the scenario before the reason.
     pub fn refused(scenario: &Scenario, refusal: Refusal) -> Self {
-        let proposals = proposals(scenario, &refusal);
+        let proposals = match refusal {
+            Refusal::Stopped => None,
+            _ => proposals_while(scenario, &refusal, &mut |_| goes_on()),
+        };
+        let Some(proposals) = proposals else { return Self::Stopped };
         let failure = Self::from(refusal).with_context(&scenario.name);
         Self::Refused(Box::new(RefusedScenario::of(failure, proposals)))
     }
@@ -118,7 +125,7 @@ impl Failure {
     #[must_use]
     pub fn with_misnamed(self, misnamed: Option<Misnamed>) -> Self {
         match self {
-            Self::ReaderGone | Self::Told => self,
+            Self::ReaderGone | Self::Told | Self::Stopped => self,
             Self::Refused(refused) => Self::Refused(Box::new(RefusedScenario { misnamed, ..*refused })),
             failure => {
                 Self::Refused(Box::new(RefusedScenario { misnamed, ..RefusedScenario::of(failure, Vec::new()) }))
@@ -166,7 +173,7 @@ impl Failure {
     #[must_use]
     pub fn worded(self, words: &dyn Fn(&str) -> String) -> Self {
         match self {
-            Self::ReaderGone | Self::Told => self,
+            Self::ReaderGone | Self::Told | Self::Stopped => self,
             Self::NoAnswer(why) => Self::NoAnswer(words(&why)),
             Self::WrongInput(why) => Self::WrongInput(words(&why)),
             Self::Refused(refused) => {
@@ -212,7 +219,8 @@ impl From<RowError> for Failure {
 impl From<ExportError> for Failure {
     fn from(e: ExportError) -> Self {
         match e {
-            ExportError::Adapter(_) | ExportError::Picture(_) | ExportError::Stopped => Self::no_answer(e),
+            ExportError::Adapter(_) | ExportError::Picture(_) => Self::no_answer(e),
+            ExportError::Stopped => Self::Stopped,
             ExportError::Write(e) | ExportError::Video(VideoError::Write(e)) => e.into(),
             ExportError::Video(VideoError::NoEncoder | VideoError::Encoder { .. }) => Self::no_answer(e),
             _ => Self::wrong_input(e),
@@ -283,8 +291,10 @@ impl From<Refusal> for Failure {
         match e {
             Refusal::Edit { refusal, .. } => match Self::from(*refusal) {
                 Self::NoAnswer(_) => Self::NoAnswer(whole),
+                Self::Stopped => Self::Stopped,
                 _ => Self::WrongInput(whole),
             },
+            Refusal::Stopped => Self::Stopped,
             // The machine lacks limits of its drives.
             Refusal::Time(TimeError::NoJerkLimit | TimeError::Unlimited { .. } | TimeError::SpeedOnly) => {
                 Self::wrong_input(e)
@@ -305,7 +315,6 @@ impl From<Refusal> for Failure {
             | Refusal::TooLong { .. }
             | Refusal::Full { .. }
             | Refusal::Diverged { .. }
-            | Refusal::Stopped
             | Refusal::Unfinished(_)
             | Refusal::Untrusted { .. } => Self::no_answer(e),
             Refusal::Machine(_)

@@ -18,7 +18,7 @@ use super::file_form::FileForm;
 use super::in_process::is_in_process;
 use super::input::{Settings, no_use, scenario};
 use super::output::{Format, TextTable, say_written};
-use super::progress::bar;
+use super::progress::Progress;
 use super::simulate::require_audit;
 use super::size::size;
 use super::strict::{Strict, run_faults};
@@ -256,22 +256,23 @@ pub fn unpictured() -> Options {
 
 /// Records with a progress bar on standard error, if that is a terminal.
 pub fn record_with_bar(scenarios: &[Scenario], to: &Target, options: &Options) -> Result<Vec<Recording>, Failure> {
-    let bar = bar(0);
-    let mut report = |progress: RecordingProgress| {
-        let what = plain(progress.what);
+    let progress = Progress::of_length(0);
+    let bar = progress.bar();
+    let mut report = |done: RecordingProgress| {
+        let what = plain(done.what);
         if bar.message() != what {
             bar.set_message(what.into_owned());
         }
-        bar.set_length(progress.total);
-        bar.set_position(progress.done);
-        true
+        bar.set_length(done.total);
+        bar.set_position(done.done);
+        progress.goes_on()
     };
     let recordings = match to {
         Target::File(file) => record(scenarios, file, options, &mut report),
         #[cfg(feature = "stream")]
         Target::Viewer(viewer) => stream(scenarios, viewer, options, &mut report),
     };
-    bar.finish_and_clear();
+    progress.finish();
     let recordings = recordings.map_err(|error| failed(error, scenarios))?;
     let notes: Vec<&String> = recordings.iter().flat_map(|r| &r.notes).collect();
     let is_first = |i: &usize| !notes[..*i].contains(&notes[*i]);
@@ -287,6 +288,7 @@ fn failed(error: RecordError, scenarios: &[Scenario]) -> Failure {
             None => Failure::from(refusal).with_context(scenario),
         },
         RecordError::Write(e) => e.into(),
+        RecordError::Stopped => Failure::Stopped,
         other => Failure::wrong_input(other),
     }
 }

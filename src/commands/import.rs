@@ -11,7 +11,7 @@ use serde::Serialize;
 use stillbase_files::table::{SampleTable, samples};
 use stillbase_files::{finish_all, is_standard, write_temporary};
 use stillbase_planning::curves::Coordinates;
-use stillbase_query::{Shared, answer_now};
+use stillbase_query::Shared;
 use stillbase_session::scenario::{MachineFile, Scenario};
 use stillbase_study::import::{GivenMotion, ImportQuery, ImportedMotion, MotionImportError, PreservedPath, Request};
 
@@ -19,6 +19,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{self, DEFAULT_SCENARIO, Settings, above_zero, floating_scenario, pose_constant, say_base_is_held};
 use super::output::{Format, check_output};
+use super::progress::answered;
 use super::remedy::option;
 use super::strict::Strict;
 use table::table;
@@ -167,7 +168,7 @@ impl ImportArguments {
         let own = Scenario { name: stem, title, summary: String::new(), machine, design, base, ..usual };
         let scenario = Shared(own.into());
         let request = Request { scenario, motion: Shared(motion.into()), b: self.b, keep };
-        let found = answer_now::<ImportQuery>(request)?;
+        let found = answered::<ImportQuery>(request)??;
         found.notes.iter().for_each(|note| print_message(format!("note: {}", note.worded(option))));
         let imported = ImportedMotion { reason: found.reason.map(|reason| reason.worded(option)), ..found };
         self.format.print(&Answer { file: &name, imported: &imported }, |answer| table(answer.imported))?;

@@ -9,12 +9,13 @@ use super::exit::{Line, status, usage_status};
 use super::input::words;
 use super::output::begin;
 use super::program::Arguments;
+use super::stop::StopFlag;
 use stillbase_simulation::signal_table::SignalTable;
 
 /// What a command printed and said.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InProcessAnswer {
-    /// Exit status: 0 done, 1 the question has no answer, 2 wrong input.
+    /// Exit status: 0 done, 1 the question has no answer, 2 wrong input, 130 stopped.
     pub status: u8,
     /// What it printed with `--json`, if anything.
     pub json: Option<String>,
@@ -31,6 +32,13 @@ pub struct InProcessAnswer {
 thread_local! {
     /// What the command in progress on this thread has said; `None` if it speaks to a terminal.
     static SAID: RefCell<Option<InProcessAnswer>> = const { RefCell::new(None) };
+    /// The flag that stops the command on this thread. Nobody sets that of a command that speaks to a terminal.
+    static STOP: RefCell<StopFlag> = RefCell::default();
+}
+
+/// Returns the flag that stops the command on this thread.
+pub(super) fn stop_flag() -> StopFlag {
+    STOP.with_borrow(Clone::clone)
 }
 
 /// Gives what a command says to the program that carries it out; `None` if there is none.
@@ -38,12 +46,13 @@ pub(super) fn take(say: impl FnOnce(&mut InProcessAnswer)) -> Option<()> {
     SAID.with_borrow_mut(|said| said.as_mut().map(say))
 }
 
-/// Forgets what a command said, also after a panic.
+/// Forgets what a command said, and its flag, also after a panic.
 struct Forgets;
 
 impl Drop for Forgets {
     fn drop(&mut self) {
         SAID.set(None);
+        STOP.take();
     }
 }
 
@@ -85,7 +94,14 @@ pub fn takes_one_value_each(command: &str, option: &str) -> bool {
 /// Carries out a command line without the name of the program, such as `check spot --json`. Only answers with `--json` are
 /// returned; files are written as ever, but one for standard output is returned.
 pub fn answer(line: impl IntoIterator<Item = OsString>) -> InProcessAnswer {
+    answer_until(line, &StopFlag::default())
+}
+
+/// Does the same as [`answer`], until a flag is set: then the command ends within a moment, with status 130 and without
+/// files that it has not finished.
+pub fn answer_until(line: impl IntoIterator<Item = OsString>, stop: &StopFlag) -> InProcessAnswer {
     let _forgets = Forgets;
+    STOP.set(stop.clone());
     SAID.set(Some(InProcessAnswer::default()));
     let status = carry_out([OsString::from("stillbase")].into_iter().chain(line));
     let said = SAID.take().unwrap_or_default();

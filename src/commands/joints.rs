@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, check_size};
+use super::progress::goes_on;
 use super::rows::{RowTarget, Rows};
 use super::simulate::require_audit;
 use super::strict::{Strict, run_faults};
@@ -67,13 +68,14 @@ impl JointsArguments {
             |last| check_size(last + 1, columns, false),
             |_, frame| {
                 extremes.include(frame);
-                if let Some(to) = to.as_ref().filter(|_| written.is_ok()) {
+                if let Some(to) = &to {
                     written = rows_of(&mut csv, to, &pins).and_then(|csv| csv.row(row(frame, pins.len())));
                 }
+                written.is_ok() && goes_on()
             },
-        )
-        .map_err(|e| Failure::refused(&scenario, e))?;
+        );
         written?;
+        let run = run.map_err(|e| Failure::refused(&scenario, e))?;
         if let Some(csv) = csv {
             csv.finish()?;
         }

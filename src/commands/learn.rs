@@ -15,6 +15,7 @@ use stillbase_study::equations::{
 use super::failure::Failure;
 use super::input::{DEFAULT_SCENARIO, Settings, machine, no_use, overlay_used, report_left_out};
 use super::output::Format;
+use super::progress::goes_on;
 use super::strict::Strict;
 use stillbase_settings::number::counted;
 
@@ -147,7 +148,7 @@ impl LearnArguments {
             let session = Session::open(scenario.clone()).map_err(|why| Failure::refused(scenario, why))?;
             return Ok(DriveState::of(session.run(), session.frame()));
         };
-        DriveState::at(scenario, at).map_err(|why| match why {
+        DriveState::at(scenario, at, goes_on).map_err(|why| match why {
             NoInstant::Refused(why) => Failure::refused(scenario, why),
             later => Failure::wrong_input(format!("--at {at}: {later}")),
         })

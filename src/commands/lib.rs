@@ -3,7 +3,8 @@
 //! This crate serves the workspace alone, and may change in any version.
 //!
 //! Names and JSON keys are a contract that scripts depend on. Results go to standard output, messages and the progress
-//! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input.
+//! bar to standard error. Exit status: 0 done, 1 the question has no answer, 2 wrong input. A program that
+//! carries out a command within itself may stop it.
 
 mod check;
 mod check_assembly;
@@ -43,7 +44,6 @@ mod output;
 mod plan;
 mod pose;
 mod program;
-#[cfg(any(feature = "record", feature = "ui"))]
 mod progress;
 mod reach;
 mod remedy;
@@ -64,6 +64,7 @@ mod sites;
 #[cfg(any(feature = "record", feature = "ui"))]
 mod size;
 mod spectrum;
+mod stop;
 mod strict;
 mod table;
 mod tolerance;
@@ -71,10 +72,11 @@ mod trim;
 mod turn_map;
 mod workspace;
 
-pub use in_process::{InProcessAnswer, answer, carry_out, takes_one_value_each};
+pub use in_process::{InProcessAnswer, answer, answer_until, carry_out, takes_one_value_each};
 pub use interrupt::watch;
 pub use open::OpenArguments;
 pub use program::{Arguments, name_commit};
+pub use stop::StopFlag;
 
 use failure::Failure;
 use stillbase_study::assembly_check::AssemblyReport;

@@ -24,6 +24,7 @@ use super::input::{
     pose_constant, pose_space, refuse_ineffective, report_idle, report_left_out, report_tolerance,
 };
 use super::output::{Format, TextTable, write_file};
+use super::progress::{check, goes_on};
 use super::strict::{Strict, bad_statements};
 use stillbase_settings::number::{counted, fixed, significant};
 use stillbase_settings::word::Choice;
@@ -122,7 +123,8 @@ impl PlanArguments {
         // A motion can be planned for a machine without a pose space, too.
         let space = pose_space(&scenario.machine).ok();
         let run = Run::new(&scenario);
-        let answer = PlanSummary::of(&scenario, space.as_ref(), run.as_ref(), self.base.as_ref());
+        let answer = PlanSummary::of(&scenario, space.as_ref(), run.as_ref(), self.base.as_ref(), &mut |_| goes_on());
+        check()?;
         let answer = answer.map_err(|e| Failure::wrong_input(e).with_context("--base"))?;
         if run.is_ok() || self.format.json {
             self.format.print(&answer, table)?;

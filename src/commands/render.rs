@@ -18,7 +18,7 @@ use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, no_use, scenario};
 use super::open::ThemeName;
 use super::output::{Format, file_words};
-use super::progress::bar;
+use super::progress::{Progress, goes_on};
 use super::size::size;
 
 /// Draw a picture or a film of a run, without a display
@@ -177,7 +177,7 @@ impl RenderArguments {
             Wanted::Picture(form) => {
                 let at = within(self.at.unwrap_or(end), end, "--at")?;
                 app_state.carry_out(SessionCommand::Seek(at));
-                let note = write_picture(&mut app_state, &picture, (file, form), self.force, &mut |_| true)?;
+                let note = write_picture(&mut app_state, &picture, (file, form), self.force, &mut |_| goes_on())?;
                 note.into_iter().for_each(|note| print_message(format!("note: {note}")));
                 return self.print(FilmDone { pictures: 1, times: [at; 2] });
             }
@@ -185,14 +185,15 @@ impl RenderArguments {
         let [from, to] = range.unwrap_or([0.0, end]);
         let times = [within(from, end, "--film")?, within(to, end, "--film")?];
         let order = FilmOrder { picture, times, fps: self.fps, slow: self.slow };
-        let bar = bar(u64::from(order.count()?));
+        let progress = Progress::of_length(u64::from(order.count()?));
+        let bar = progress.bar();
         bar.set_message("pictures");
         let goes_on = &mut |done: f64| {
             bar.set_position((done * bar.length().unwrap_or(0) as f64).round() as u64);
-            true
+            progress.goes_on()
         };
         let done = write_film(&mut app_state, &order, (file, film_form), self.force, goes_on);
-        bar.finish_and_clear();
+        progress.finish();
         self.print(done?)
     }
 

@@ -8,6 +8,7 @@ use stillbase_files::recorded::CaseName;
 use super::diff::{Case, ToleranceOptions};
 use super::failure::Failure;
 use super::output::Format;
+use super::progress::goes_on;
 
 /// Simulate a recorded session again and compare every signal with the recording
 ///
@@ -60,7 +61,7 @@ impl ReplayArguments {
         for case in recorded {
             let tolerances = self.tolerance.over(case.tolerances());
             let scenario = case.scenario()?;
-            let difference = case.simulated_again(&scenario, &tolerances);
+            let difference = case.simulated_again(&scenario, &tolerances, goes_on);
             let difference = difference.map_err(|e| Failure::refused(&scenario, e))?;
             let versions = [case.version, own.to_owned()];
             cases.push(Replayed { versions, case: Case::of(&case.name, &difference) });

@@ -17,6 +17,7 @@ use super::failure::Failure;
 use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, file_words};
+use super::progress::goes_on;
 use super::simulate::require_audit;
 use super::strict::{Strict, bad_statements};
 
@@ -74,7 +75,7 @@ impl ReportArguments {
         if self.compare {
             app_state.carry_out(ViewChange::Switch(Switch::Compare, true));
         }
-        let done = write_report(&mut app_state, Some(self.command()), &self.output, self.force, &mut |_| true)?;
+        let done = write_report(&mut app_state, Some(self.command()), &self.output, self.force, &mut |_| goes_on())?;
         let ReportDone { pictures, plots, statements, fault } = done;
         let pictures = pictures.unwrap_or_else(|why| {
             print_message(format!("the report has no pictures: {why}"));

@@ -10,6 +10,7 @@ use stillbase_simulation::signal_table::SignalTable;
 use super::failure::Failure;
 use super::input::{Settings, scenario};
 use super::output::check_size;
+use super::progress::goes_on;
 
 /// A name and the signals of each case; a table has one case without a name.
 type Cases = Vec<(Option<String>, SignalTable)>;
@@ -87,5 +88,5 @@ fn recorded(_: &str) -> Option<Result<Cases, Failure>> {
 /// If it cannot run, or has too many steps.
 pub fn table_of(scenario: &stillbase_session::scenario::Scenario) -> Result<SignalTable, Failure> {
     let fits = |last: u64, signals: usize| check_size(last + 1, signals + 1, true);
-    signal_table(scenario, fits, |_, _| true).map_err(|e| Failure::refused(scenario, e))
+    signal_table(scenario, fits, |_, _| true, goes_on).map_err(|e| Failure::refused(scenario, e))
 }

@@ -18,7 +18,7 @@ use stillbase_simulation::signals::{Signal, row_heads, signals};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::in_process::{is_in_process, take};
+use super::in_process::{is_in_process, stop_flag, take};
 use super::input::{DEFAULT_SCENARIO, Settings, assembly_scenario, scenario};
 use super::output::{Format, TextTable, check_size};
 use super::rows::{RowTarget, Rows};
@@ -222,16 +222,17 @@ impl SimulateArguments {
         // The CSV is begun at the first step, so that a run that cannot start prints nothing.
         let mut csv = None;
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
-        // The run cannot be stopped; after a failure to write, no more rows are written.
+        // After a failure to write, the run ends.
         let mut written = Ok(());
+        let stop = stop_flag();
         let fits = |last: u64| check_size(last / self.every + 2, table.len() + 1, self.format.json);
         let run = replay_if(&scenario, fits, |run, frame| {
             let is_due = frame.step % self.every == 0 || frame.step == run.last_step();
             if !is_due || !self.choice.has_time(frame.time) {
-                return;
+                return stop.goes_on();
             }
             rows += 1;
-            if let Some(to) = to.as_ref().filter(|_| written.is_ok()) {
+            if let Some(to) = &to {
                 let values = [frame.time].into_iter().chain(table.iter().map(|s| s.value(frame)));
                 written = rows_of(&mut csv, to, &table).and_then(|csv| csv.row(values));
             }
@@ -239,9 +240,10 @@ impl SimulateArguments {
                 time.push(frame.time);
                 columns.iter_mut().zip(&table).for_each(|(column, signal)| column.push(value(signal, frame)));
             }
-        })
-        .map_err(|e| Failure::refused(&scenario, e))?;
+            written.is_ok() && stop.goes_on()
+        });
         written?;
+        let run = run.map_err(|e| Failure::refused(&scenario, e))?;
         if rows == 0 {
             return Err(self.choice.no_row(run.frame().time).with_context(&scenario.name));
         }

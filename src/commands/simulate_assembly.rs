@@ -9,7 +9,9 @@ use stillbase_settings::number::{counted, fixed, fixed_or_finer};
 
 use super::exit::print_message;
 use super::failure::Failure;
+use super::in_process::stop_flag;
 use super::output::{TextTable, check_size};
+use super::progress::check;
 use super::rows::{RowTarget, Rows};
 use super::simulate::{Columns, SimulateArguments};
 
@@ -122,6 +124,7 @@ impl SimulateArguments {
         let (mut count, mut written) = (0_u64, Ok(()));
         let (mut time, mut columns) = (Vec::new(), vec![Vec::new(); table.len()]);
         let value = |signal: &AssemblySignal, frame: &_| signal.value(frame) + 0.0;
+        let stop = stop_flag();
         let verdict = run.run(|frame| {
             let is_due = frame.step % self.every == 0 || frame.step == last;
             if is_due && self.choice.has_time(frame.time) {
@@ -134,8 +137,9 @@ impl SimulateArguments {
                     columns.iter_mut().zip(&table).for_each(|(column, of)| column.push(value(of, frame)));
                 }
             }
-            written.is_ok()
+            written.is_ok() && stop.goes_on()
         });
+        check()?;
         written?;
         if count == 0 {
             return Err(self.choice.no_row(last as f64 * scenario.step).with_context(&scenario.name));

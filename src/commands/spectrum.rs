@@ -14,6 +14,7 @@ use super::failure::Failure;
 use super::file_form::FileForm;
 use super::input::{DEFAULT_SCENARIO, Settings, scenario};
 use super::output::{Format, TextTable, yes};
+use super::progress::goes_on;
 use super::rows::{RowTarget, Rows};
 use super::simulate::require_audit;
 use super::strict::Strict;
@@ -101,7 +102,7 @@ impl SpectrumArguments {
             ));
         }
         let failed = |why| failed(why, &scenario);
-        let mut of = BaseSpectrum::of(&scenario, self.window).map_err(failed)?;
+        let mut of = BaseSpectrum::of(&scenario, self.window, goes_on).map_err(failed)?;
         if let Some(to) = &to {
             write(to, &of)?;
         }

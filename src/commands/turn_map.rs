@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::file_form::FileForm;
 use super::input::{Settings, no_use, scenario};
 use super::output::{Format, TextTable};
+use super::progress::{check, goes_on};
 use super::rows::{RowTarget, Rows};
 
 /// Map where the end effector gets along straight rays at zero angular momentum, and while the base turns a little
@@ -78,7 +79,8 @@ impl TurnMapArguments {
             return Err(no_use("--turn-limit", "base.kind = free without a wheel: no other base turns"));
         }
         let rays = run.rays().map_err(|why| Failure::no_answer(format!("{}: {why}", scenario.name)))?;
-        let map = TurnMap::of(&rays, &limits, &mut |_| true);
+        let map = TurnMap::of(&rays, &limits, &mut |_| goes_on());
+        check()?;
         let map = map.ok_or_else(|| Failure::no_answer("there is no map"))?;
         if let Some(to) = &to {
             write(to, &map)?;

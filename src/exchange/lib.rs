@@ -19,4 +19,5 @@ pub mod thin;
 mod tree;
 mod turn;
 pub mod urdf;
-mod xml;
+#[doc(hidden)]
+pub mod xml;

@@ -50,8 +50,13 @@ impl RecordedCase {
     /// instant counts too.
     ///
     /// # Errors
-    /// If the scenario cannot run.
-    pub fn simulated_again(&self, scenario: &Scenario, tolerances: &Tolerances) -> Result<TableDifference, Refusal> {
+    /// If the scenario cannot run, or `goes_on` returns `false`.
+    pub fn simulated_again(
+        &self,
+        scenario: &Scenario,
+        tolerances: &Tolerances,
+        goes_on: impl Fn() -> bool,
+    ) -> Result<TableDifference, Refusal> {
         let mut recorded = self.table.time.iter().peekable();
         let again = signal_table(
             scenario,
@@ -61,6 +66,7 @@ impl RecordedCase {
                 let is_recorded = recorded.peek().is_some_and(|time| **time <= frame.time + SAME_INSTANT_S);
                 is_recorded || frame.step == run.last_step()
             },
+            goes_on,
         )?;
         Ok(TableDifference::between(&self.table, &again, tolerances))
     }

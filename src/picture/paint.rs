@@ -2,7 +2,7 @@
 
 pub mod figure;
 pub mod labels;
-pub mod portrait;
+mod portrait;
 pub mod thumbnail;
 
 use std::sync::Arc;

@@ -4,6 +4,9 @@ use numpy::{PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use stillbase_commands::StopFlag;
+
+use crate::watched::watched;
 
 /// An array of numbers without gaps.
 pub struct Dense<'py> {
@@ -98,13 +101,33 @@ pub fn rows_of_a_part(count: usize, threads: usize) -> usize {
     count.div_ceil(threads.clamp(1, most)).max(1)
 }
 
-/// Does the work of each part in a thread of its own; that of a single part in this one.
-pub fn in_threads<T: Send>(parts: impl ExactSizeIterator<Item = T>, work: impl Fn(usize, T) + Sync) {
-    if parts.len() < 2 {
-        return parts.for_each(|part| work(0, part));
+/// Most evaluations of dynamics that are made in the thread that asks: they take about a millisecond, and need no look
+/// at signals.
+const FEW_EVALUATIONS: usize = 10_000;
+
+/// Does the work of each part in a thread of its own, until a signal of Python stops it; the interpreter is free
+/// meanwhile. All parts together take a number of evaluations of dynamics; few are made in this thread.
+///
+/// # Errors
+/// If a signal stops the work.
+pub fn in_threads<T: Send>(
+    py: Python<'_>,
+    evaluations: usize,
+    parts: impl ExactSizeIterator<Item = T> + Send,
+    work: impl Fn(usize, T, &StopFlag) + Sync,
+) -> PyResult<()> {
+    if evaluations <= FEW_EVALUATIONS {
+        let stop = StopFlag::default();
+        py.detach(|| parts.enumerate().for_each(|(i, part)| work(i, part, &stop)));
+        return Ok(());
     }
-    std::thread::scope(|scope| {
-        let work = &work;
-        parts.enumerate().for_each(|(i, part)| _ = scope.spawn(move || work(i, part)));
-    });
+    watched(py, |stop| {
+        if parts.len() < 2 {
+            return parts.for_each(|part| work(0, part, stop));
+        }
+        std::thread::scope(|scope| {
+            let work = &work;
+            parts.enumerate().for_each(|(i, part)| _ = scope.spawn(move || work(i, part, stop)));
+        });
+    })
 }

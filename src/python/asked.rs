@@ -6,10 +6,11 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
-use stillbase_commands::{InProcessAnswer, answer, takes_one_value_each};
+use stillbase_commands::{InProcessAnswer, answer_until, takes_one_value_each};
 use stillbase_files::text::with_standard_input;
 
 use crate::machine::Machine;
+use crate::watched::watched;
 
 create_exception!(
     stillbase,
@@ -109,12 +110,12 @@ fn is_list(value: &Bound<'_, PyAny>) -> PyResult<bool> {
 /// exceptions.
 ///
 /// # Errors
-/// If the command fails.
+/// If the command fails, or a signal stops it.
 pub fn carried_out(py: Python<'_>, words: Vec<OsString>, input: Option<String>) -> PyResult<InProcessAnswer> {
-    let said = py.detach(|| match input {
-        Some(text) => with_standard_input(text, || answer(words)),
-        None => answer(words),
-    });
+    let said = watched(py, |stop| match input {
+        Some(text) => with_standard_input(text, || answer_until(words, stop)),
+        None => answer_until(words, stop),
+    })?;
     for note in &said.notes {
         let note = std::ffi::CString::new(note.as_str())?;
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;

@@ -75,6 +75,17 @@ struct Results<'a> {
     moment: &'a mut [f64],
 }
 
+/// Number of rows after which a thread asks again whether to go on; they take less than a millisecond.
+const ROWS_PER_QUESTION: usize = 4096;
+
+impl<'a> Results<'a> {
+    /// Splits the results into parts of a number of rows.
+    fn parts(self, rows: usize, drives: usize) -> impl ExactSizeIterator<Item = Self> + Send {
+        let parts = self.torque.chunks_mut(rows * drives).zip(self.force.chunks_mut(2 * rows));
+        parts.zip(self.moment.chunks_mut(rows)).map(|((torque, force), moment)| Results { torque, force, moment })
+    }
+}
+
 /// Fills results with the loads of the states from a row on.
 #[inline(never)]
 fn fill<const N: usize>(of: (&Inertia, &ExternalLoads), states: &[States<'_>; 3], from: usize, results: Results<'_>) {
@@ -100,7 +111,7 @@ fn fill<const N: usize>(of: (&Inertia, &ExternalLoads), states: &[States<'_>; 3]
 /// Evaluates states of motion on a number of threads; the interpreter is free meanwhile.
 ///
 /// # Errors
-/// If shapes do not fit.
+/// If shapes do not fit, or a signal stops the work.
 pub fn evaluate(
     py: Python<'_>,
     machine: &Machine,
@@ -141,13 +152,14 @@ pub fn evaluate(
         let inertia = Inertia::of(machine);
         let around = ExternalLoads { gravity: machine.gravity(), ..ExternalLoads::default() };
         let part = rows_of_a_part(count, threads);
-        py.detach(|| {
-            let parts = torque.chunks_mut(part * drives).zip(force.chunks_mut(part * 2)).zip(moment.chunks_mut(part));
-            in_threads(parts, |i, ((torque, force), moment)| {
-                let results = Results { torque, force, moment };
-                by_drives!(drives, fill((&inertia, &around), &states, i * part, results));
-            });
-        });
+        let results = Results { torque, force, moment };
+        in_threads(py, count, results.parts(part, drives), |i, results, stop| {
+            let portions = results.parts(ROWS_PER_QUESTION, drives).enumerate();
+            for (k, results) in portions.take_while(|_| stop.goes_on()) {
+                let from = i * part + k * ROWS_PER_QUESTION;
+                by_drives!(drives, fill((&inertia, &around), &states, from, results));
+            }
+        })?;
     }
     Ok(result)
 }

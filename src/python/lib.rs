@@ -12,12 +12,15 @@ mod dynamics;
 mod machine;
 mod run;
 mod steps;
+mod watched;
 
 use pyo3::prelude::*;
 
 /// Zero reaction manipulators: the part of the package that is written in Rust.
 #[pymodule]
 mod _stillbase {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::asked::{NoAnswer, StillbaseError, WrongInput, ask, main, plan, record};
     #[pymodule_export]
@@ -26,6 +29,13 @@ mod _stillbase {
     use super::machine::Machine;
     #[pymodule_export]
     use super::run::{Run, simulate};
+
+    /// Runs are mappings for others, too.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let mapping = module.py().import("collections.abc")?.getattr("Mapping")?;
+        mapping.call_method1("register", (module.py().get_type::<Run>(),)).map(|_| ())
+    }
 
     /// Version of the package.
     #[pymodule_export]

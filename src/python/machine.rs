@@ -3,11 +3,13 @@
 use std::ffi::OsString;
 use std::sync::Arc;
 
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyType};
 use stillbase_files::found_machine;
 use stillbase_files::text::with_standard_input;
 use stillbase_mechanics::machine::{self, to_toml};
+use stillbase_picture::scene::portrait::portrait_svg;
 use stillbase_simulation::plant::EqualSteps;
 
 use crate::asked::{answered, carried_out, options, setting, wrong_input};
@@ -37,23 +39,34 @@ impl Machine {
         to_toml(&self.machine)
     }
 
-    /// Returns the words of a command on this machine.
-    fn line(command: &str, words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-        [command.into(), "-".into()].into_iter().chain(words).collect()
+    /// Returns the words of a command on this machine, with its options.
+    fn line(command: &str, words: &[&str], given: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<OsString>> {
+        let words = [command, "-"].into_iter().chain(words.iter().copied()).map(OsString::from);
+        Ok(words.chain(options(command, given)?).collect())
     }
 
     /// Carries out a command on this machine.
-    fn asked<'py>(&self, py: Python<'py>, command: &str, words: Vec<OsString>) -> PyResult<Bound<'py, PyAny>> {
-        answered(py, Self::line(command, words), Some(self.input()))
+    fn asked<'py>(
+        &self,
+        py: Python<'py>,
+        command: &str,
+        words: &[&str],
+        given: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        answered(py, Self::line(command, words, given)?, Some(self.input()))
     }
 
     /// Returns the file of an ending that `export-model` makes of this machine.
     fn exported(&self, py: Python<'_>, ending: &str, given: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
-        let words = ["--output", "-", "--format", ending].map(OsString::from);
-        let line = Self::line("export-model", words.into_iter().chain(options("export-model", given)?));
+        let line = Self::line("export-model", &["--output", "-", "--format", ending], given)?;
         let file = carried_out(py, line, Some(self.input()))?.file.unwrap_or_default();
         String::from_utf8(file).map_err(wrong)
     }
+}
+
+/// Returns a point, m, as a word of the command line.
+fn word([x, y]: [f64; 2]) -> String {
+    format!("{x:?},{y:?}")
 }
 
 /// Returns the exception of wrong input.
@@ -180,7 +193,7 @@ impl Machine {
         self.exported(py, "urdf", given)
     }
 
-    /// Draws the links, each flat and at scale 1 : 1, as `stillbase export-model` does for cutting; notebooks show it.
+    /// Draws the machine from above, with a scale; notebooks show it. The links for cutting are drawn by `export-model`.
     ///
     /// ```python
     /// >>> import stillbase as sb
@@ -188,26 +201,31 @@ impl Machine {
     /// 1
     ///
     /// ```
-    #[pyo3(signature = () -> "str")]
-    fn _repr_svg_(&self, py: Python<'_>) -> PyResult<String> {
-        let quiet = PyDict::new(py);
-        quiet.set_item("quiet", true)?;
-        self.exported(py, "svg", Some(&quiet))
+    fn _repr_svg_(&self) -> String {
+        portrait_svg(&self.machine)
     }
 
-    /// Returns the machine with keys set, such as `{"link.2.com": 0.22}`.
+    /// Returns the machine with a key set, such as `set("link.2.com", 0.22)`, or with several, as a dictionary.
     ///
     /// ```python
     /// >>> import stillbase as sb
-    /// >>> moved = sb.Machine.builtin("nine-link").set({"link.5.com": 0})
-    /// >>> moved.check()["force_balanced"]
+    /// >>> machine = sb.Machine.builtin("nine-link")
+    /// >>> machine.set("link.5.com", 0).check()["force_balanced"]
+    /// False
+    /// >>> machine.set({"link.5.com": 0, "gravity": (0, -9.81)}) == machine.set("link.5.com", 0)
     /// False
     ///
     /// ```
-    #[pyo3(signature = (keys: "dict[str, typing.Any]"))]
-    fn set(&self, keys: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let pairs = keys.iter().map(|(key, value)| Ok((key.str()?.to_string(), setting(&value)?)));
-        let pairs = pairs.collect::<PyResult<Vec<_>>>()?;
+    #[pyo3(signature = (keys: "dict[str, typing.Any] | str", value: "typing.Any" = None))]
+    fn set(&self, keys: &Bound<'_, PyAny>, value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let pairs = match (keys.cast::<PyDict>(), value) {
+            (Ok(keys), None) => {
+                let pairs = keys.iter().map(|(key, value)| Ok((key.str()?.to_string(), setting(&value)?)));
+                pairs.collect::<PyResult<Vec<_>>>()?
+            }
+            (Err(_), Some(value)) => vec![(keys.extract()?, setting(value)?)],
+            _ => return Err(PyTypeError::new_err("want a dictionary of keys and values, or one key and its value")),
+        };
         let pairs = pairs.iter().map(|(key, value)| (key.as_str(), value.as_str()));
         self.machine.set_all(pairs).map(Self::of).map_err(wrong)
     }
@@ -248,7 +266,7 @@ impl Machine {
     /// ```
     #[pyo3(signature = () -> "dict[str, typing.Any]")]
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.asked(py, "check", Vec::new())
+        self.asked(py, "check", &[], None)
     }
 
     /// Places the links' centres of mass so that the machine is balanced, as `stillbase design` with its options.
@@ -262,7 +280,7 @@ impl Machine {
     /// ```
     #[pyo3(signature = (**given: "typing.Any") -> "dict[str, typing.Any]")]
     fn design<'py>(&self, py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        self.asked(py, "design", options("design", given)?)
+        self.asked(py, "design", &[], given)
     }
 
     /// Finds the counterweights that balance the machine, as `stillbase design --counterweights` with its options.
@@ -276,8 +294,7 @@ impl Machine {
     /// ```
     #[pyo3(signature = (**given: "typing.Any") -> "dict[str, typing.Any]")]
     fn counterweights<'py>(&self, py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
-        let words = ["--counterweights".into()].into_iter().chain(options("design", given)?);
-        self.asked(py, "design", words.collect())
+        self.asked(py, "design", &["--counterweights"], given)
     }
 
     /// Finds the Pareto front of a number of designs, as `stillbase design --counterweights --front` with its options.
@@ -296,8 +313,7 @@ impl Machine {
         count: u32,
         given: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let words = ["--counterweights".into(), "--front".into(), count.to_string().into()];
-        self.asked(py, "design", words.into_iter().chain(options("design", given)?).collect())
+        self.asked(py, "design", &["--counterweights", "--front", &count.to_string()], given)
     }
 
     /// The reactionless workspace of b, rad, as `stillbase workspace` with its options.
@@ -315,8 +331,7 @@ impl Machine {
         b: f64,
         given: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let words = ["--b".into(), format!("{b:?}").into()].into_iter().chain(options("workspace", given)?);
-        self.asked(py, "workspace", words.collect())
+        self.asked(py, "workspace", &["--b", &format!("{b:?}")], given)
     }
 
     /// The poses that put the end effector on a point (x, y), m, at b, rad, as `stillbase pose`.
@@ -329,8 +344,7 @@ impl Machine {
     /// ```
     #[pyo3(signature = (point: "typing.Sequence[float]", b) -> "dict[str, typing.Any]")]
     fn poses<'py>(&self, py: Python<'py>, point: [f64; 2], b: f64) -> PyResult<Bound<'py, PyAny>> {
-        let [x, y] = point;
-        self.asked(py, "pose", vec![format!("{x:?},{y:?}").into(), "--b".into(), format!("{b:?}").into()])
+        self.asked(py, "pose", &[&word(point), "--b", &format!("{b:?}")], None)
     }
 
     /// The pose constants b that reach points (x, y), m, as `stillbase reach`.
@@ -344,12 +358,14 @@ impl Machine {
     /// ```
     #[pyo3(signature = (points: "typing.Sequence[typing.Sequence[float]]") -> "dict[str, typing.Any]")]
     fn reach<'py>(&self, py: Python<'py>, points: Vec<[f64; 2]>) -> PyResult<Bound<'py, PyAny>> {
-        self.asked(py, "reach", points.iter().map(|[x, y]| format!("{x:?},{y:?}").into()).collect())
+        let words: Vec<String> = points.into_iter().map(word).collect();
+        self.asked(py, "reach", &words.iter().map(String::as_str).collect::<Vec<_>>(), None)
     }
 
     /// Motor torques and base reactions of states of motion: absolute drive angles, rad, rates, rad/s, and
     /// accelerations, rad/s², each of shape (..., drives). They broadcast as arrays of NumPy do. `out` is an earlier
-    /// result of the same shape, which is overwritten. The numbers are those of `stillbase dynamics`, to the last bit.
+    /// result of the same shape, which is overwritten, after an interrupt in part. The numbers are those of `stillbase
+    /// dynamics`, to the last bit.
     ///
     /// ```python
     /// >>> import numpy as np, stillbase as sb
@@ -382,7 +398,7 @@ impl Machine {
     /// constant meanwhile. Returns absolute drive angles, rad, and rates, rad/s, after the last step.
     ///
     /// `q`, `qd` and `torque` have the shape (..., drives), and broadcast as arrays of NumPy do. `out` is a pair of
-    /// arrays for the results, which may be `(q, qd)` itself.
+    /// arrays for the results, which may be `(q, qd)` itself. After an interrupt some states are advanced, others not.
     ///
     /// A step is one of the classical fourth-order Runge–Kutta method, as `stillbase simulate` makes it: to the last
     /// bit, where that needs no substeps. Nothing chooses the step here: the error of a state is of order dt⁴. Rates

@@ -6,23 +6,25 @@ use std::fmt::Write as _;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyInt, PyIterator};
 use stillbase_settings::number::significant;
 use stillbase_settings::results::find;
 use stillbase_simulation::signal_table::SignalTable;
 
 use crate::asked::{carried_out, options, parsed};
 
-/// A simulated motion: the time, every signal by its name, and the verdict.
+/// A simulated motion: a mapping of names to the arrays of its signals, the time, and the verdict.
 ///
 /// ```python
 /// >>> import stillbase as sb
 /// >>> run = sb.simulate("case-3")
 /// >>> float(abs(run["moment/total"]).max()) < 1e-8
 /// True
+/// >>> "torque/1" in run, dict(run)["torque/1"] is run["torque/1"], run.get("torque/9") is None
+/// (True, True, True)
 ///
 /// ```
-#[pyclass(frozen, module = "stillbase")]
+#[pyclass(frozen, mapping, module = "stillbase")]
 pub struct Run {
     /// Time of each row, s.
     ///
@@ -104,9 +106,74 @@ impl Run {
         }
     }
 
-    /// Returns the number of rows.
-    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
-        self.time.bind(py).len()
+    /// Returns the number of signals; `len(run.time)` is that of the rows.
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.signals.bind(py).len()
+    }
+
+    fn __contains__(&self, py: Python<'_>, name: &Bound<'_, PyAny>) -> PyResult<bool> {
+        self.signals.bind(py).contains(name)
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        self.signals.bind(py).try_iter()
+    }
+
+    /// Names of the signals.
+    ///
+    /// ```python
+    /// >>> import stillbase as sb
+    /// >>> list(sb.simulate("case-1", signals="torque").keys())
+    /// ['torque/1', 'torque/2', 'torque/3']
+    ///
+    /// ```
+    #[pyo3(signature = () -> "typing.KeysView[str]")]
+    fn keys<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.signals.bind(py).call_method0("keys")
+    }
+
+    /// Arrays of the signals.
+    ///
+    /// ```python
+    /// >>> import stillbase as sb
+    /// >>> [array.shape for array in sb.simulate("case-1", signals="torque").values()]
+    /// [(1001,), (1001,), (1001,)]
+    ///
+    /// ```
+    #[pyo3(signature = () -> "typing.ValuesView[numpy.typing.NDArray[numpy.float64]]")]
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.signals.bind(py).call_method0("values")
+    }
+
+    /// Names and arrays of the signals.
+    ///
+    /// ```python
+    /// >>> import stillbase as sb
+    /// >>> {name: array.shape for name, array in sb.simulate("case-1", signals="torque/1").items()}
+    /// {'torque/1': (1001,)}
+    ///
+    /// ```
+    #[pyo3(signature = () -> "typing.ItemsView[str, numpy.typing.NDArray[numpy.float64]]")]
+    fn items<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.signals.bind(py).call_method0("items")
+    }
+
+    /// The signal of a name, or `default` if there is none.
+    ///
+    /// ```python
+    /// >>> import stillbase as sb
+    /// >>> sb.simulate("case-1").get("torque/9", 0)
+    /// 0
+    ///
+    /// ```
+    #[pyo3(signature = (name, default: "typing.Any" = None) -> "typing.Any")]
+    fn get<'py>(
+        &self,
+        py: Python<'py>,
+        name: &Bound<'py, PyAny>,
+        default: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        Ok(self.signals.bind(py).get_item(name)?.or(default))
     }
 
     /// A table of scenario, verdict and figures of the run with their units, which notebooks show.
@@ -131,9 +198,8 @@ impl Run {
             else {
                 continue;
             };
-            let numbers = value.extract::<Vec<f64>>().or_else(|_| value.extract().map(|number: f64| vec![number]));
-            let Ok(numbers) = numbers else { continue };
-            let numbers: Vec<String> = numbers.iter().map(|number| significant(*number)).collect();
+            let all = value.extract::<Vec<Bound<'_, PyAny>>>().unwrap_or_else(|_| vec![value]);
+            let Ok(numbers) = all.iter().map(number).collect::<PyResult<Vec<_>>>() else { continue };
             // Writing to a string cannot fail.
             let unit = if row.unit == "1" { "" } else { row.unit };
             let _ = writeln!(html, "<tr><th>{key}</th><td>{} {unit}</td></tr>", numbers.join(", "));
@@ -142,8 +208,16 @@ impl Run {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (rows, signals) = (self.__len__(py)?, self.signals.bind(py).len());
+        let (rows, signals) = (self.time.bind(py).len()?, self.__len__(py));
         Ok(format!("<stillbase.Run of {}: {signals} signals in {rows} rows>", self.scenario))
+    }
+}
+
+/// Returns a number in words; those that count are whole.
+fn number(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    match value.is_instance_of::<PyInt>() {
+        true => Ok(value.str()?.to_string()),
+        false => Ok(significant(value.extract()?)),
     }
 }
 

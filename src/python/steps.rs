@@ -12,10 +12,13 @@ use crate::arrays::{Rows, empty, in_threads, rows_of_a_part};
 /// Angles and rates.
 pub type Angles<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
 
+/// Evaluations of dynamics in a step of the fourth order.
+const EVALUATIONS_PER_STEP: usize = 4;
+
 /// Advances states of motion under constant torques on a number of threads; the interpreter is free meanwhile.
 ///
 /// # Errors
-/// If shapes do not fit, or the step is not finite.
+/// If shapes do not fit, the step is not finite, or a signal stops the work.
 pub fn step<'py>(
     py: Python<'py>,
     machine: &Machine,
@@ -65,16 +68,16 @@ pub fn step<'py>(
     let body = body.map_err(|why| PyValueError::new_err(why.to_string()))?;
     {
         let torque = torque.array.as_slice()?;
-        let part = rows_of_a_part(shape.iter().product(), threads);
+        let count = shape.iter().product();
+        let part = rows_of_a_part(count, threads);
         let (mut q, mut qd) = (result.0.try_readwrite()?, result.1.try_readwrite()?);
         let (q, qd) = (q.as_slice_mut()?, qd.as_slice_mut()?);
-        py.detach(|| {
-            let parts = q.chunks_mut(part * drives).zip(qd.chunks_mut(part * drives));
-            in_threads(parts, |i, (q, qd)| {
-                let own = if has_all { &torque[i * part * drives..][..q.len()] } else { torque };
-                body.advance_under(own, steps, q, qd);
-            });
-        });
+        let parts = q.chunks_mut(part * drives).zip(qd.chunks_mut(part * drives));
+        let evaluations = count.saturating_mul(steps.count).saturating_mul(EVALUATIONS_PER_STEP);
+        in_threads(py, evaluations, parts, |i, (q, qd), stop| {
+            let own = if has_all { &torque[i * part * drives..][..q.len()] } else { torque };
+            body.advance_under(own, steps, [q, qd], &|| stop.goes_on());
+        })?;
     }
     Ok(result)
 }

@@ -36,7 +36,7 @@ pub use queries::WeakQueries;
 pub use query_result::{QueryResult, QueryStatus};
 #[doc(hidden)]
 pub use question::part;
-pub use question::{Portion, ProgressCallback, Query, QuickQuery, QuickWork, answer_now};
+pub use question::{Portion, ProgressCallback, Query, QuickQuery, QuickWork, answer_now, answer_while};
 pub use sequence::Sequence;
 #[doc(hidden)]
 pub use sequence::{Revision, RevisionMark};

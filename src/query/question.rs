@@ -53,6 +53,19 @@ pub fn answer_now<Q: Query>(input: Q::Input) -> Q::Answer {
     }
 }
 
+/// Returns the answer to an input, computed at once and without a cache entry; `None` if `goes_on` ends the work. It is
+/// called between portions, too.
+pub fn answer_while<Q: Query>(input: Q::Input, goes_on: ProgressCallback<'_>) -> Option<Q::Answer> {
+    let mut work = Q::begin(input);
+    loop {
+        match work.go_on(goes_on) {
+            Portion::Done(answer) => return Some(answer),
+            Portion::More(done) if goes_on(done) => {}
+            Portion::More(_) | Portion::Stopped => return None,
+        }
+    }
+}
+
 /// A query that is computed in one portion.
 pub trait QuickQuery: 'static {
     /// As [`Query::Input`].

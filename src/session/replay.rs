@@ -27,20 +27,8 @@ pub fn with_start_edits(scenario: &Scenario) -> Result<(Scenario, usize), Refusa
 /// # Errors
 /// If the scenario cannot start, an edit cannot apply, the run has too many steps, or the motion diverges.
 pub fn replay(scenario: &Scenario, see: impl FnMut(&Run, &Frame)) -> Result<Run, Refusal> {
-    replay_if(scenario, |_| Ok(()), see)
-}
-
-/// Does the same as [`replay`]. Before the run begins, `allow` receives the number of the last step, and may refuse it.
-///
-/// # Errors
-/// As [`replay`], and the refusal of `allow`.
-pub fn replay_if(
-    scenario: &Scenario,
-    allow: impl FnOnce(u64) -> Result<(), Refusal>,
-    see: impl FnMut(&Run, &Frame),
-) -> Result<Run, Refusal> {
     let mut see = see;
-    whole(scenario, allow, |run, frame| {
+    replay_while(scenario, |run, frame| {
         see(run, frame);
         true
     })
@@ -51,10 +39,15 @@ pub fn replay_if(
 /// # Errors
 /// As [`replay`], and [`Refusal::Stopped`] if `see` ends the run early.
 pub fn replay_while(scenario: &Scenario, see: impl FnMut(&Run, &Frame) -> bool) -> Result<Run, Refusal> {
-    whole(scenario, |_| Ok(()), see)
+    replay_if(scenario, |_| Ok(()), see)
 }
 
-fn whole(
+/// Does the same as [`replay_while`]. Before the run begins, `allow` receives the number of the last step, and may
+/// refuse it.
+///
+/// # Errors
+/// As [`replay_while`], and the refusal of `allow`.
+pub fn replay_if(
     scenario: &Scenario,
     allow: impl FnOnce(u64) -> Result<(), Refusal>,
     see: impl FnMut(&Run, &Frame) -> bool,
@@ -67,15 +60,16 @@ fn whole(
     done.map_err(|failed| failed.named(&scenario.edits))
 }
 
-/// Returns the signals of a scenario at the instants that `keeps` chooses. Before the run begins, `allow` receives the
-/// number of the last step and the number of signals, and may refuse them.
+/// Returns the signals of a scenario at the instants that `keeps` chooses, as long as `goes_on` returns `true`. Before
+/// the run begins, `allow` receives the number of the last step and the number of signals, and may refuse them.
 ///
 /// # Errors
-/// As [`replay`], and the refusal of `allow`.
+/// As [`replay_while`], and the refusal of `allow`.
 pub fn signal_table(
     scenario: &Scenario,
     allow: impl FnOnce(u64, usize) -> Result<(), Refusal>,
     mut keeps: impl FnMut(&Run, &Frame) -> bool,
+    goes_on: impl Fn() -> bool,
 ) -> Result<SignalTable, Refusal> {
     // The first edits may draw another machine.
     let (start, _) = with_start_edits(scenario)?;
@@ -85,22 +79,27 @@ pub fn signal_table(
         if keeps(run, frame) {
             table.push(&signals, frame);
         }
+        goes_on()
     };
     replay_if(scenario, |last| allow(last, signals.len()), see)?;
     Ok(table)
 }
 
-/// Returns the dynamic f_Bx and f_By, N, and the net moment on the base, N m, at every step of a scenario. Also returns
-/// the first figure of the final audit that exceeds its tolerance, if any.
+/// Returns the dynamic f_Bx and f_By, N, and the net moment on the base, N m, at every step of a scenario, as long as
+/// `goes_on` returns `true`. Also returns the first figure of the final audit that exceeds its tolerance, if any.
 ///
 /// # Errors
-/// As [`replay`].
-pub fn base_loads(scenario: &Scenario) -> Result<([Vec<f64>; 3], Option<AuditFigure>), Refusal> {
+/// As [`replay_while`].
+pub fn base_loads(
+    scenario: &Scenario,
+    goes_on: impl Fn() -> bool,
+) -> Result<([Vec<f64>; 3], Option<AuditFigure>), Refusal> {
     let mut course: [Vec<f64>; 3] = Default::default();
-    let run = replay(scenario, |_, frame| {
+    let run = replay_while(scenario, |_, frame| {
         let force = frame.wrench.dynamic.force;
         let now = [force.re, force.im, frame.felt_moment];
         course.iter_mut().zip(now).for_each(|(all, x)| all.push(x));
+        goes_on()
     })?;
     Ok((course, run.frame().first_violation()))
 }

@@ -90,12 +90,12 @@ pub enum NoBaseSpectrum {
 }
 
 impl BaseSpectrum {
-    /// Runs a scenario to its end and returns the spectra of its base wrench.
+    /// Runs a scenario to its end and returns the spectra of its base wrench, as long as `goes_on` returns `true`.
     ///
     /// # Errors
-    /// Fails if the scenario cannot be run, or its samples have no spectrum.
-    pub fn of(scenario: &Scenario, window: WindowFunction) -> Result<Self, NoBaseSpectrum> {
-        let (course, fault) = base_loads(scenario)?;
+    /// Fails if the scenario cannot be run or `goes_on` ends it, or its samples have no spectrum.
+    pub fn of(scenario: &Scenario, window: WindowFunction, goes_on: impl Fn() -> bool) -> Result<Self, NoBaseSpectrum> {
+        let (course, fault) = base_loads(scenario, goes_on)?;
         let [force_x, force_y, moment] = &course;
         let of = |samples: &[f64]| Spectrum::of(samples, scenario.step, window);
         let spectra = PerAxis { force_x: of(force_x)?, force_y: of(force_y)?, moment: of(moment)? };

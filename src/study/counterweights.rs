@@ -11,8 +11,8 @@ use super::lengths::{FoundLengths, LengthSearch, NoLengths, SearchProgress, sear
 use super::measures::Measures;
 use super::workshop::{BarsReport, CutRequest, NoCut};
 use stillbase_mechanics::counterweights::{
-    CounterweightError, CounterweightSpec, FreeRotor, PayloadResidual, PlacedCounterweights, front, over_payloads,
-    place_weights,
+    CounterweightError, CounterweightSpec, FreeRotor, PayloadResidual, PlacedCounterweights, front_while,
+    over_payloads, place_weights,
 };
 use stillbase_mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
 use stillbase_planning::Motion;
@@ -51,6 +51,9 @@ pub enum NoCounterweights {
     /// The result is no valid machine.
     #[error(transparent)]
     Machine(#[from] MachineError),
+    /// The caller has cancelled the work.
+    #[error("stopped before its end")]
+    Stopped,
 }
 
 /// Report on a machine with counterweights.
@@ -184,16 +187,18 @@ pub fn removed_weights(machine: &Machine) -> Vec<Counterweight> {
     machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect()
 }
 
-/// Balances a machine by counterweights and reports on it, with torques if a motion is given. Calls `go_on` after every
-/// machine of a search for lengths; once it returns `false`, the best machine so far is the result.
+/// Balances a machine by counterweights and reports on it, with torques if a motion is given. Calls `seek_on` after
+/// every machine of a search for lengths; once it returns `false`, the best machine so far is the result. Once
+/// `goes_on` returns `false`, there is none.
 ///
 /// # Errors
-/// Fails if no counterweights balance the machine, or the request is invalid.
+/// Fails if no counterweights balance the machine, the request is invalid, or `goes_on` ends the work.
 pub fn balance_by_weights(
     machine: &Machine,
     request: &CounterweightRequest,
     motion: Option<&Motion>,
-    go_on: &mut dyn FnMut(SearchProgress) -> bool,
+    seek_on: &mut dyn FnMut(SearchProgress) -> bool,
+    goes_on: &dyn Fn() -> bool,
 ) -> Result<(Machine, CounterweightReport), NoCounterweights> {
     let mut weighing = request.spec.clone();
     let (mut bars, mut on_bars, mut as_cut) = (None, None, None);
@@ -208,7 +213,11 @@ pub fn balance_by_weights(
         }
         None => (place_weights(machine, &weighing).map_err(NoCounterweights::Weights)?, None),
         Some(lengths) => {
-            let found = search(machine, lengths, go_on).map_err(NoCounterweights::Lengths)?;
+            let found = search(machine, lengths, &mut |progress| goes_on() && seek_on(progress));
+            if !goes_on() {
+                return Err(NoCounterweights::Stopped);
+            }
+            let found = found.map_err(NoCounterweights::Lengths)?;
             if lengths.anywhere {
                 weighing.sites = stretched(&weighing.sites, machine, &found.placed.machine);
             }
@@ -222,14 +231,20 @@ pub fn balance_by_weights(
         None => (&weighing, if sought.is_some() { &placed.machine } else { machine }),
     };
     let front = match request.front {
-        Some(count) => front(base, spec, count).map_err(NoCounterweights::Front)?.points,
+        Some(count) => {
+            let front = front_while(base, spec, count, &mut |_| goes_on()).ok_or(NoCounterweights::Stopped)?;
+            front.map_err(NoCounterweights::Front)?.points
+        }
         None => Vec::new(),
     };
     let built = |placed: PlacedCounterweights| match &as_cut {
         Some((found, stock)) => found.as_built(placed, spec, stock),
         None => Ok(placed),
     };
-    let measured = |placed| -> Result<FrontPoint, MachineError> { Ok(FrontPoint::of(&built(placed)?, motion, true)) };
+    let measured = |placed| match goes_on() {
+        true => Ok(FrontPoint::of(&built(placed)?, motion, true)),
+        false => Err(NoCounterweights::Stopped),
+    };
     let front = front.into_iter().map(measured).collect::<Result<Vec<_>, _>>()?;
     let mut report = CounterweightReport::of(&placed, front, motion, &weighing)?;
     (report.optimised_lengths, report.bars) = (sought, bars);

@@ -13,7 +13,7 @@ use stillbase_planning::off_plane::price::PriceError;
 use stillbase_planning::pose_constant::PointCorrection;
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Proposal, Refusal, Run, base_forecast, proposals};
+use stillbase_session::{ProgressCallback, Proposal, Refusal, Run, base_forecast, proposals_while};
 
 /// Summary of a task.
 #[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
@@ -136,6 +136,7 @@ pub struct Obstacle {
 impl PlanSummary {
     /// Summarises the task of a scenario, from its run or from the reason that there is none. `space` is the pose space
     /// of its machine, if the machine has a b. With `base`, a change of b is assessed for that freely floating base.
+    /// The search for proposals ends, without any, if `goes_on` returns `false`.
     ///
     /// # Errors
     /// Fails if the parameters of the base are invalid.
@@ -144,11 +145,12 @@ impl PlanSummary {
         space: Option<&PoseSpace>,
         planned: Result<&Run, &Refusal>,
         base: Option<&FloatingBase>,
+        goes_on: ProgressCallback<'_>,
     ) -> Result<Self, PriceError> {
         let common = space.and_then(|space| common_b_set(space, &scenario.task.points()));
         let (b, cost, obstacle) = match planned {
             Ok(run) => (run.plan().forecast.b_start, Some(PlanCost::of(run, base)?), None),
-            Err(refusal) => (scenario.task.b, None, Some(Obstacle::of(scenario, refusal))),
+            Err(refusal) => (scenario.task.b, None, Some(Obstacle::of(scenario, refusal, goes_on))),
         };
         Ok(Self {
             feasible: planned.is_ok(),
@@ -210,13 +212,13 @@ impl PlanCost {
 }
 
 impl Obstacle {
-    /// Returns the obstacle that the refusal of a scenario states.
-    pub fn of(scenario: &Scenario, refusal: &Refusal) -> Self {
+    /// Returns the obstacle that the refusal of a scenario states; it has no proposals if `goes_on` ends the search.
+    pub fn of(scenario: &Scenario, refusal: &Refusal, goes_on: ProgressCallback<'_>) -> Self {
         Self {
             blocked: if let Refusal::Blocked(blocked) = refusal { Some(blocked.clone()) } else { None },
             feasible_b: refusal.feasible_b(),
             correction: if let Refusal::NoCommonPlane { why, .. } = refusal { why.correction } else { None },
-            proposals: proposals(scenario, refusal),
+            proposals: proposals_while(scenario, refusal, goes_on).unwrap_or_default(),
         }
     }
 }

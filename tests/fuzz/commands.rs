@@ -16,7 +16,7 @@ use stillbase_commands::input::{Settings, overlay_used};
 
 fn said(failure: &Failure) -> Result<(), String> {
     match failure {
-        Failure::ReaderGone | Failure::Told => Ok(()),
+        Failure::ReaderGone | Failure::Told | Failure::Stopped => Ok(()),
         Failure::NoAnswer(why) | Failure::WrongInput(why) => is_short(why),
         Failure::Refused(refused) => said(&refused.failure),
     }

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
+from collections.abc import Mapping
 from importlib import resources
 from xml.etree import ElementTree
 
@@ -281,14 +282,18 @@ except sb.WrongInput as why:
 else:
     raise AssertionError("a file is overwritten")
 
-# Models and drawings are the files of the command line, and XML.
+# Models are the files of the command line, and XML.
 machine = sb.Machine.builtin("nine-link")
-for ending, text in (("xml", machine.to_mjcf()), ("urdf", machine.to_urdf()), ("svg", machine._repr_svg_())):
+for ending, text in (("xml", machine.to_mjcf()), ("urdf", machine.to_urdf())):
     printed("export-model", "nine-link", "-o", f"mine.{ending}")
     with open(f"mine.{ending}", encoding="utf-8") as file:
         assert file.read() == text, ending
     assert ElementTree.fromstring(text) is not None
 assert machine.to_mjcf(pose=[1.5, 4.2, 3.1]) != machine.to_mjcf(pose=[1.5, 4.2, 3.0])
+# A notebook shows the whole machine: a title for it and for each link, and a ring for each pin.
+picture = ElementTree.fromstring(machine._repr_svg_())
+assert picture.get("aria-label") == "nine-link: 3 drives, 16.050 kg" and picture.get("viewBox")
+assert len(picture.findall(".//{*}title")) == 10 and len(picture.findall("{*}circle")) > 7
 
 # A machine as a dictionary and back; a wrong one is refused with its place.
 spec = machine.to_dict()
@@ -303,14 +308,47 @@ else:
 assert pickle.loads(pickle.dumps(machine)) == machine == copy.deepcopy(machine)
 assert {machine: 1}[sb.Machine.from_toml(machine.to_toml())] == 1
 assert machine.set({"link.5.com": 0}).check()["force_balanced"] is False
+assert machine.set("link.5.com", 0) == machine.set({"link.5.com": 0})
+assert machine.set("gravity", (0, -9.81)).to_dict()["gravity"] == [0, -9.81]
+for wrong in (("link.5.com",), ({"link.5.com": 0}, 1), (3, 4)):
+    try:
+        machine.set(*wrong)
+    except TypeError:
+        pass
+    else:
+        raise AssertionError(f"set takes {wrong}")
+# A word that is no command is named; nothing opens a window.
+for words in (("foo",), ("foo", "bar"), ("case-1",), ()):
+    try:
+        sb.ask(*words)
+    except sb.WrongInput as why:
+        named = f"{words[0]}: no such command: want one of " if words else "no command: want one of "
+        assert str(why).startswith(named) and "simulate, " in str(why), why
+    else:
+        raise AssertionError(f"{words} are a command")
 assert sb.Machine.builtin("nine-link-bare").counterweights(max_mass={"1": 8})["certified"]
 
 run = sb.simulate("case-1", set={"plant.payload.mass": 0.1}, every=10)
 assert run.time.flags.owndata or run.time.base is not None
 assert run["torque/1"].shape == run.time.shape and run.units["torque/1"] == "N m"
+# A run is a mapping of its signals.
+assert isinstance(run, Mapping) and len(run) == len(run.signals) == len(list(run)) and len(run.time) == 101
+assert list(run) == list(run.keys()) == [name for name, _ in run.items()] and dict(run).keys() == run.keys()
+assert all(one is run[name] for name, one in zip(run, run.values())) and run.get("torque/1") is run["torque/1"]
+assert "torque/1" in run and "torque/9" not in run and 3 not in run and run.get("torque/9", 7) == 7
+try:
+    run["torque/9"]
+except KeyError as why:
+    assert "torque/9" in str(why), why
+else:
+    raise AssertionError("a signal that is not there")
+frame = pd.DataFrame(dict(run), index=run.time)
+assert list(frame.columns) == list(run) and frame.index[-1] == 1.0 and (frame["torque/1"] == run["torque/1"]).all()
 assert np.isclose(abs(run["moment/total"]).max(), run.verdict["peak_base_moment"], rtol=0.05)
 table = ElementTree.fromstring(run._repr_html_())
 assert "case-1" in table.find("caption").text and len(table.findall("tr")) > 5
+cells = {row.find("th").text: row.find("td").text.strip() for row in table.findall("tr")}
+assert cells["steps"] == "1000" and "." in cells["peak_base_moment"], cells
 with warnings.catch_warnings(record=True) as notes:
     warnings.simplefilter("always")
     sb.ask("export-model", "spot", output="spot.xml")

@@ -4,13 +4,24 @@
 use super::python::python;
 use crate::Test;
 
-pub const TESTS: &[Test] = tests![the_package_does_what_it_says];
+pub const TESTS: &[Test] = tests![the_package_does_what_it_says, an_interrupt_ends_a_call];
 #[cfg(feature = "cli")]
 pub const NOTEBOOKS: &[Test] = tests![the_notebooks_hold_what_they_assert];
 
 /// Its doctests pass, and so does a script that holds it against sums of its own.
 fn the_package_does_what_it_says() {
-    let done = python().args(["-c", include_str!("package.py")]).output().expect("it was there a moment ago");
+    passes(include_str!("package.py"));
+}
+
+/// Ctrl-C ends a call within a moment, with nothing left behind. Other systems have no alarms.
+fn an_interrupt_ends_a_call() {
+    if cfg!(unix) {
+        passes(include_str!("package_interrupts.py"));
+    }
+}
+
+fn passes(script: &str) {
+    let done = python().args(["-c", script]).output().expect("it was there a moment ago");
     let said = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
     assert!(done.status.success(), "{said}");
 }

@@ -38,4 +38,5 @@ assert rest.count("\n") <= 1, rest
 body = re.sub(r'(: |-> )"([^"\n]+)"(?=[,:)]| =)', r"\1\2", body)
 body = body.replace("Incomplete", "numpy.typing.NDArray[numpy.float64]")
 body = body.replace("SupportsGetItem[int, str]", "typing.Sequence[str]")
+body = body.replace("-> Iterator:", "-> typing.Iterator[str]:")
 print(head, IMPORTS, body.rstrip(), *exceptions(), sep="\n", end="")

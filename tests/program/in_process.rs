@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 
 use stillbase::files::text::with_standard_input;
-use stillbase_commands::{InProcessAnswer, answer};
+use stillbase_commands::{InProcessAnswer, StopFlag, answer, answer_until};
 
 use super::{prints, stillbase, text};
 use crate::folder::Folder;
@@ -98,4 +98,27 @@ fn a_machine_may_be_text() {
     assert_eq!(with_standard_input(toml, ask).json.as_deref(), Some(&*prints(&["check", "spot", "--json"])));
     let wrong = with_standard_input("name = 3".into(), ask);
     assert!(wrong.status == 2 && wrong.errors[0].contains("standard input"), "{wrong:?}");
+}
+
+/// A command that is told to stop ends with a failure of its own, and leaves no file; others do not hear of it.
+#[test]
+fn a_command_stops_when_it_is_told_to() {
+    let folder = Folder::new("stopped");
+    let file = folder.path("new.csv");
+    let file = file.to_str().expect("UTF-8");
+    for line in [
+        &["tolerance", "case-3", "--samples", "1000000", "-o", file][..],
+        &["design", "nine-link-bare", "--counterweights", "--vary", "length.l5=0.3:0.6:99", "--table", file],
+        &["design", "nine-link-bare", "--counterweights", "--front", "99"],
+        &["simulate", "case-1", "-o", file],
+        &["compare", "case-1"],
+        &["turn-map", "spot"],
+    ] {
+        let stop = StopFlag::default();
+        stop.stop();
+        let said = answer_until(line.iter().map(OsString::from), &stop);
+        assert_eq!((said.status, &said.errors[..]), (130, &["stopped before its end".to_owned()][..]), "{line:?}");
+        assert!(std::fs::read_dir(&folder.0).expect("a folder").next().is_none(), "{line:?}");
+    }
+    assert_eq!(asked(&["check", "spot", "--json"]).status, 0);
 }

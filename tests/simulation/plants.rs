@@ -55,7 +55,7 @@ fn steps_without_control_are_those_of_a_run() {
     for count in [0, 1, 64, frames.len() - 1] {
         let (mut q, mut qd) = (start.q.to_vec(), start.qd.to_vec());
         let steps = EqualSteps { length: scenario.step, count };
-        body.advance_under(&[0.0; 3], steps, &mut q, &mut qd);
+        body.advance_under(&[0.0; 3], steps, [&mut q, &mut qd], &|| true);
         assert_eq!((&q[..], &qd[..]), (&frames[count].q[..], &frames[count].qd[..]), "after {count} steps");
     }
     let moved = (0..3).map(|k| (frames[frames.len() - 1].q[k] - start.q[k]).abs()).fold(f64::INFINITY, f64::min);

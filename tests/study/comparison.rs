@@ -313,10 +313,10 @@ fn rows_are_what_runs_come_to() {
     let mut impossible = scenario("case-3");
     impossible.task.to = [5.0, 5.0];
     let mut rows = ComparisonTable::default();
-    rows.run(None, &impossible);
-    rows.run(Some("as it is"), &scenario("case-3"));
+    rows.run(None, &impossible, &mut |_| true);
+    rows.run(Some("as it is"), &scenario("case-3"), &mut |_| true);
     assert!(!rows.have_designs());
-    rows.run(None, &scenario("two-drive"));
+    rows.run(None, &scenario("two-drive"), &mut |_| true);
     assert!(rows.have_designs());
     let [refused, first, other] = rows.rows() else { panic!("three runs") };
     assert!(refused.outcome.is_err() && refused.design.is_none() && refused.title() == "case-3");

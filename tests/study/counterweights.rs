@@ -32,7 +32,8 @@ fn lengths(starts: usize) -> LengthSearch {
 fn the_report_is_of_the_machine_that_comes_out() {
     let bare = family_machine("nine-link-bare");
     let asked = CounterweightRequest { spec: weighing(), lengths: None, front: Some(3), bars: None };
-    let (machine, report) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
+    let (machine, report) =
+        balance_by_weights(&bare, &asked, None, &mut |_| true, &|| true).expect("it can be balanced");
     let placed = place_weights(&bare, &asked.spec).expect("it can be balanced");
     let inertia = Inertia::of(&machine);
     assert!(report.is_balanced && inertia.is_balanced() && report.certified == placed.is_certified());
@@ -43,7 +44,8 @@ fn the_report_is_of_the_machine_that_comes_out() {
     // From light to quick.
     assert!(report.front.windows(2).all(|w| w[0][0] <= w[1][0] + 1e-9 && w[0][1] + 1e-9 >= w[1][1]));
     let heavy = CounterweightSpec { max_added_mass: Some(1e-3), ..weighing() };
-    let refused = balance_by_weights(&bare, &CounterweightRequest { spec: heavy, ..asked }, None, &mut |_| true);
+    let refused =
+        balance_by_weights(&bare, &CounterweightRequest { spec: heavy, ..asked }, None, &mut |_| true, &|| true);
     assert!(matches!(refused, Err(NoCounterweights::Weights(_))));
 }
 
@@ -51,11 +53,13 @@ fn the_report_is_of_the_machine_that_comes_out() {
 fn what_it_had_is_taken_off_and_lengths_are_sought() {
     let bare = family_machine("nine-link-bare");
     let asked = CounterweightRequest { spec: weighing(), lengths: None, front: None, bars: None };
-    let (weighed, first) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
-    let (_, again) = balance_by_weights(&weighed, &asked, None, &mut |_| true).expect("it can be balanced");
+    let (weighed, first) =
+        balance_by_weights(&bare, &asked, None, &mut |_| true, &|| true).expect("it can be balanced");
+    let (_, again) = balance_by_weights(&weighed, &asked, None, &mut |_| true, &|| true).expect("it can be balanced");
     assert_eq!(again.taken_off, first.weights);
     let asked = CounterweightRequest { lengths: Some(lengths(2)), ..asked };
-    let (longer, report) = balance_by_weights(&bare, &asked, None, &mut |_| true).expect("it can be balanced");
+    let (longer, report) =
+        balance_by_weights(&bare, &asked, None, &mut |_| true, &|| true).expect("it can be balanced");
     let sought = report.optimised_lengths.expect("lengths");
     assert_eq!((&*sought.lengths[0].0, sought.starts, sought.certified), ("l5", 2, false));
     assert!((longer.spec().lengths["l5"] - sought.lengths[0].1).abs() < 1e-12);

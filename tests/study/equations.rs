@@ -397,7 +397,7 @@ fn momenta_are_counted_by_the_first_drive_that_has_one() {
 fn on_a_turning_base_accelerations_are_relative_to_it() {
     let mut scenario = Scenario::builtin("spacecraft").expect("built in");
     scenario.step = 1e-4;
-    let at = |time: f64| DriveState::at(&scenario, time).expect("within the run");
+    let at = |time: f64| DriveState::at(&scenario, time, || true).expect("within the run");
     let mut most = 0.0_f64;
     replay(&scenario, |_, frame| most = most.max(frame.base_angular_acceleration.abs())).expect("it runs");
     assert!(most > 0.05, "the base turns with {most} rad/s² at most: too little to tell");
@@ -434,9 +434,9 @@ fn one_drive_is_written_of_alone() {
 #[test]
 fn a_time_of_a_run_has_a_state() {
     let scenario = Scenario::builtin("case-1").expect("built in");
-    let state = DriveState::at(&scenario, 0.3).expect("it runs so far");
+    let state = DriveState::at(&scenario, 0.3, || true).expect("it runs so far");
     assert!(matches!(state.when, InstantKind::Run(time) if (time - 0.3).abs() < 1e-9));
-    let later = DriveState::at(&scenario, 1e3).expect_err("it is over then");
+    let later = DriveState::at(&scenario, 1e3, || true).expect_err("it is over then");
     assert!(matches!(later, NoInstant::Later { end } if end > 0.9), "{later}");
     let stated = StatedEquations::of(&scenario.machine, &state, &of(&scenario.machine, &state));
     assert_eq!(stated.equations.len(), EQUATION_NUMBERS.len());

@@ -50,7 +50,8 @@ fn each_front_is_that_of_its_machine_alone() {
         // A motion of three drives says nothing of a machine of two.
         let own = (of.machine.drives() == 3).then_some(&*motion.0);
         let alone = CounterweightRequest { spec: of.spec.clone(), lengths: None, front: Some(COUNT), bars: None };
-        let (_, report) = balance_by_weights(&of.machine, &alone, own, &mut |_| true).expect("it can be balanced");
+        let (_, report) =
+            balance_by_weights(&of.machine, &alone, own, &mut |_| true, &|| true).expect("it can be balanced");
         assert_eq!((&told.points, told.measures()), (&report.front_points, report.front));
         assert!(told.points.iter().all(|point| point.torque.is_some() == own.is_some()));
     }

@@ -10,7 +10,7 @@ use stillbase::study::plan_summary::PlanSummary;
 fn summary(scenario: &Scenario, base: Option<&FloatingBase>) -> PlanSummary {
     let space = PoseSpace::of(&scenario.machine).expect("it has a b");
     let run = Run::new(scenario);
-    PlanSummary::of(scenario, Some(&space), run.as_ref(), base).expect("a base")
+    PlanSummary::of(scenario, Some(&space), run.as_ref(), base, &mut |_| true).expect("a base")
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn a_change_of_b_has_a_price() {
     assert_eq!((fixed.delta_b, fixed.least_peak), (floating.delta_b, floating.least_peak));
     let run = Run::new(&change).expect("planned");
     let bad = FloatingBase { mass: f64::NAN, ..base };
-    assert!(PlanSummary::of(&change, None, Ok(&run), Some(&bad)).is_err());
+    assert!(PlanSummary::of(&change, None, Ok(&run), Some(&bad), &mut |_| true).is_err());
 }
 
 /// What is in the way is said with what would do, and serialises to the keys of the command line.

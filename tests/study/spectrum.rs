@@ -121,8 +121,8 @@ fn what_has_no_spectrum_is_refused() {
 #[test]
 fn the_spectra_of_a_base_are_those_of_what_it_felt() {
     let scenario = Scenario::builtin("case-1").expect("built in");
-    let mut found = BaseSpectrum::of(&scenario, WindowFunction::Rectangular).expect("long enough");
-    let ([x, y, n], fault) = base_loads(&scenario).expect("it runs");
+    let mut found = BaseSpectrum::of(&scenario, WindowFunction::Rectangular, || true).expect("long enough");
+    let ([x, y, n], fault) = base_loads(&scenario, || true).expect("it runs");
     assert_eq!((found.samples, found.fault.clone(), fault), (n.len(), None, None));
     for ((.., spectrum), samples) in found.spectra.named().into_iter().zip([&x, &y, &n]) {
         assert_eq!(*spectrum, Spectrum::of(samples, scenario.step, WindowFunction::Rectangular).expect("long enough"));

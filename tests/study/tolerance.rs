@@ -396,7 +396,7 @@ fn simulated_machines_come_to_perfect_tracking_as_gains_grow() {
         (0..4)
             .map(|machine| {
                 let plant = ensemble.machine_of(&of_machine(&sampler, machine)).expect("possible");
-                let simulated = simulate(&run, &plant).expect("it ends");
+                let simulated = simulate(&run, &plant, &|| true).expect("it ends");
                 (simulated.rms_moment - outcomes[machine].rms_moment).abs() / outcomes[machine].rms_moment
             })
             .fold(0.0, f64::max)
@@ -406,7 +406,7 @@ fn simulated_machines_come_to_perfect_tracking_as_gains_grow() {
     // The nominal machine tracks perfectly.
     let run = Run::new(&base).expect("it starts");
     let ensemble = Ensemble::new(&base.machine, &run.plan().motion, 2000, &some, 3).expect("it varies");
-    let (simulated, nominal) = (simulate(&run, &base.machine).expect("it ends"), ensemble.nominal_outcome());
+    let (simulated, nominal) = (simulate(&run, &base.machine, &|| true).expect("it ends"), ensemble.nominal_outcome());
     assert!((simulated.peak_moment / nominal.peak_moment - 1.0).abs() < 1e-5);
     assert!((simulated.rms_moment / nominal.rms_moment - 1.0).abs() < 2e-3, "{simulated:?}, {nominal:?}");
 }
@@ -422,14 +422,16 @@ fn batches_are_parts_of_the_whole() {
     let all = sampler.outcomes(1).to_vec();
     let first = CHUNK as u64;
     let range = first + 2..first + 5;
-    let batch = Batch::of(&ensemble, &mut sampler, Mode::Tracking, 1, &range, true).expect("nothing is simulated");
+    let batch =
+        Batch::of(&ensemble, &mut sampler, Mode::Tracking, 1, &range, (true, &|| true)).expect("nothing is simulated");
     assert_eq!((&batch.samples, &batch.outcomes[..]), (&range, &all[2..5]));
     assert!(batch.tracking.is_empty() && batch.deviations.len() == 3);
     assert_eq!(batch.deviations[1], of_machine(&sampler, 3));
-    let simulated = Batch::of(&ensemble, &mut sampler, Mode::Simulated(&run), 1, &range, false).expect("they end");
+    let simulated =
+        Batch::of(&ensemble, &mut sampler, Mode::Simulated(&run), 1, &range, (false, &|| true)).expect("they end");
     assert!(simulated.tracking == batch.outcomes && simulated.deviations.is_empty());
     let plant = ensemble.machine_of(&batch.deviations[0]).expect("possible");
-    assert_eq!(simulated.outcomes[0], simulate(&run, &plant).expect("it ends"));
+    assert_eq!(simulated.outcomes[0], simulate(&run, &plant, &|| true).expect("it ends"));
     let against = TrackingComparison::of(&simulated.outcomes, &simulated.tracking).expect("they were simulated");
     let furthest = simulated.outcomes.iter().zip(&batch.outcomes).map(|(a, b)| (a.peak_moment - b.peak_moment).abs());
     assert_eq!(against.peak_moment_difference, furthest.fold(0.0, f64::max));

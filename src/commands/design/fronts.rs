@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_mechanics::machine::Machine;
-use stillbase_query::answer_now;
 use stillbase_study::fronts::{FrontCase, Fronts, FrontsRequest, MachineFront};
 
 use super::super::failure::Failure;
 use super::super::input::task_run;
 use super::super::output::TextTable;
+use super::super::progress::answered;
 use super::DesignArguments;
 use super::brief::report_brief;
 use super::weighed::{FRONT_HEADINGS, cut_failure, front_cells, report_removed};
@@ -38,7 +38,7 @@ impl DesignArguments {
         let machines = machines.into_iter().map(of).collect::<Result<_, Failure>>()?;
         let motion = task.as_ref().and_then(|run| run.shared_motion());
         let request = FrontsRequest { machines, count: self.weighing.front_count(), motion, workspace: true };
-        let answer = Answer { fronts: answer_now::<Fronts>(request) };
+        let answer = Answer { fronts: answered::<Fronts>(request)? };
         let mut refused = answer.fronts.iter().filter_map(|of| Some((of, of.outcome.as_ref().err()?)));
         let mut refusals = refused.clone().map(|(of, why)| cut_failure(why.clone()).with_context(&of.name));
         if let Some(wrong) = refusals.find(|why| matches!(why, Failure::WrongInput(_))) {

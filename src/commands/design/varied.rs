@@ -19,6 +19,7 @@ use stillbase_study::tolerance::shard;
 use super::super::failure::Failure;
 use super::super::file_form::FileForm;
 use super::super::output::TextTable;
+use super::super::progress::check;
 use super::super::rows::{RowTarget, Rows};
 use super::super::tolerance::parse_shard;
 use super::DesignArguments;
@@ -168,6 +169,7 @@ impl DesignArguments {
             None => Ok(()),
         };
         for point in points.clone() {
+            check()?;
             let values = space.point(point);
             match self.design_at(machine, design, motion, space.axes(), &values) {
                 Ok((machine, report)) => {

@@ -27,6 +27,7 @@ use super::super::ends::parse_bounds;
 use super::super::exit::print_message;
 use super::super::failure::Failure;
 use super::super::output::TextTable;
+use super::super::progress::goes_on;
 use super::super::sites::{link, range, sites};
 use super::measures;
 
@@ -388,8 +389,8 @@ impl WeightArguments {
         let stock = spec.stock;
         let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from), bars };
         let begun = Instant::now();
-        let mut go_on = |_| begun.elapsed().as_secs_f64() < within;
-        balance_by_weights(&machine, &request, motion, &mut go_on).map_err(|why| match why {
+        let mut seek_on = |_| begun.elapsed().as_secs_f64() < within;
+        balance_by_weights(&machine, &request, motion, &mut seek_on, &goes_on).map_err(|why| match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
             NoCounterweights::Weights(why) => self.refusal(&why, &why, &stock),
             NoCounterweights::Front(why) => request_failure(why),
@@ -397,6 +398,7 @@ impl WeightArguments {
             NoCounterweights::Cut(ref cut @ NoCut::Bounds { ref why, .. }) => self.refusal(cut, why, &stock),
             NoCounterweights::Cut(why) => cut_failure(why),
             NoCounterweights::Machine(why) => why.into(),
+            NoCounterweights::Stopped => Failure::Stopped,
         })
     }
 }

@@ -22,6 +22,7 @@ use super::{FIGURE_ENDINGS, FiguresArguments, print, write};
 use crate::failure::Failure;
 use crate::input::{no_use, pose_space, scenario};
 use crate::output::check_output;
+use crate::progress::goes_on;
 
 /// A part of the figures of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -133,7 +134,7 @@ fn plot(part: RunFigure, app_state: &AppState, width: f32) -> Result<PrintPart, 
         RunFigure::TurnMap => {
             let rays = session.run().rays();
             let rays = rays.map_err(|why| Failure::no_answer(format!("{}: {why}", scenario.name)))?;
-            let map = TurnMap::of(&rays, turn_limits(scenario.base.floats()), &mut |_| true);
+            let map = TurnMap::of(&rays, turn_limits(scenario.base.floats()), &mut |_| goes_on());
             let map = map.ok_or_else(|| Failure::no_answer("there is no map"))?;
             Ok(PrintPart::Plot(turn_areas(Theme::Light, &map), DRAWING_HEIGHT * width))
         }

@@ -17,8 +17,8 @@ use stillbase_files::shards::{
 use stillbase_session::scenario::{MAX_SAMPLES, Scenario, Spread, Tolerance as Section};
 use stillbase_session::{Run, with_start_edits};
 use stillbase_study::tolerance::{
-    Batch, BinValues, CHUNK, Ensemble, EnsemblePart, KnownRanks, Limits, MAX_VALUES, Mode, PartReport, PartResults,
-    Recount, SampleOutcome, Summary, ToleranceError, Yields,
+    Batch, BinValues, CHUNK, Ensemble, EnsemblePart, GoesOn, KnownRanks, Limits, MAX_VALUES, Mode, PartReport,
+    PartResults, Recount, SampleOutcome, Summary, ToleranceError, Yields,
 };
 
 pub use self::report::{MergedParts, ToleranceAnswer};
@@ -27,6 +27,7 @@ use crate::failure::Failure;
 use crate::file_form::FileForm;
 use crate::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 use crate::output::{Format, say_written};
+use crate::progress::Progress;
 use crate::strict::Strict;
 use stillbase_settings::number::counted;
 
@@ -331,7 +332,9 @@ impl ToleranceArguments {
         };
         let results = results.ok_or_else(|| Failure::no_answer("no machine was drawn"))?;
         let part = EnsemblePart { run: &run, ensemble: &ensemble, samples, machines, simulated: self.simulate };
-        let report = PartReport::of(&part, results).map_err(|e| Failure::refused(&scenario, e))?;
+        let progress = Progress::hidden();
+        let report =
+            PartReport::of(&part, results, &|| progress.goes_on()).map_err(|e| Failure::refused(&scenario, e))?;
         let answer = ToleranceAnswer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
         self.output.iter().for_each(|file| say_written(file));
         self.format.print(&answer, |answer| report::text(&answer.report))?;
@@ -350,7 +353,7 @@ impl ToleranceArguments {
         limits: Limits,
         range: &Range<u64>,
     ) -> Result<Summary, Failure> {
-        let bar = self.progress(range.end - range.start);
+        let progress = self.progress(range.end - range.start);
         let workers = parallel::share_out(
             ensemble,
             self.mode(run),
@@ -358,10 +361,11 @@ impl ToleranceArguments {
             || Summary::new(limits),
             |sum, batch| {
                 sum.add(batch.samples.start, &batch.outcomes);
-                bar.inc(batch.samples.end - batch.samples.start);
+                progress.add(batch.samples.end - batch.samples.start);
             },
+            &|| progress.goes_on(),
         );
-        bar.finish_and_clear();
+        progress.finish();
         let mut whole = Summary::new(limits);
         for sum in workers.map_err(|e| Failure::refused(run.scenario(), e))? {
             // They have the same limits, and say nothing of their machines: each was given to one of them.
@@ -396,7 +400,7 @@ impl ToleranceArguments {
         if passes.is_empty() && counts_anew {
             passes.push(BinValues::default());
         }
-        let bar = self.progress(sum.count() * passes.len() as u64);
+        let progress = self.progress(sum.count() * passes.len() as u64);
         let failed = |e| Failure::refused(run.scenario(), e);
         let foreign = || {
             let why = "it holds other machines than this program draws: want it made by the same version";
@@ -421,8 +425,9 @@ impl ToleranceArguments {
                     if found.waiting >= WAITING_MACHINES {
                         take_over(found);
                     }
-                    bar.inc(batch.samples.end - batch.samples.start);
+                    progress.add(batch.samples.end - batch.samples.start);
                 },
+                &|| progress.goes_on(),
             );
             workers.map_err(failed)?.iter_mut().for_each(take_over);
             let whole = all.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -433,13 +438,14 @@ impl ToleranceArguments {
             let machine = extreme.machine..extreme.machine + 1;
             let chunk = extreme.machine / CHUNK as u64;
             let mut sampler = ensemble.sampler();
-            let drawn = Batch::of(ensemble, &mut sampler, self.mode(run), chunk, &machine, false).map_err(failed)?;
+            let once = (false, &(|| progress.goes_on()) as GoesOn<'_>);
+            let drawn = Batch::of(ensemble, &mut sampler, self.mode(run), chunk, &machine, once).map_err(failed)?;
             let value = drawn.outcomes.first().map(|outcome| outcome.numbers()[number]);
             if value != Some(extreme.value) {
                 return Err(foreign());
             }
         }
-        bar.finish_and_clear();
+        progress.finish();
         say_missing(&sum.missing(study.samples));
         let held = sum.machines();
         let machines = held.first().map_or(0, |own| own.start)..held.last().map_or(0, |own| own.end);
@@ -465,10 +471,11 @@ impl ToleranceArguments {
             None => None,
         };
         let mode = self.mode(run);
-        let bar = self.progress(range.end - range.start);
+        let progress = self.progress(range.end - range.start);
         let mut outcomes = Vec::with_capacity((range.end - range.start) as usize);
         let (mut tracking, mut numbers) = (Vec::new(), Vec::new());
-        let done = parallel::evaluate(ensemble, mode, range, writer.is_some(), |batch| {
+        let goes_on = || progress.goes_on();
+        let done = parallel::evaluate(ensemble, mode, range, (writer.is_some(), &goes_on), |batch| {
             if let Some(writer) = &mut writer {
                 for ((sample, deviations), outcome) in batch.samples.clone().zip(&batch.deviations).zip(&batch.outcomes)
                 {
@@ -477,12 +484,12 @@ impl ToleranceArguments {
                     writer.machine(sample, &numbers, outcome)?;
                 }
             }
-            bar.inc(batch.samples.end - batch.samples.start);
+            progress.add(batch.samples.end - batch.samples.start);
             outcomes.extend(batch.outcomes);
             tracking.extend(batch.tracking);
             Ok::<_, Failure>(())
         });
-        bar.finish_and_clear();
+        progress.finish();
         done?;
         if let Some(writer) = writer {
             writer.finish()?;
@@ -490,11 +497,12 @@ impl ToleranceArguments {
         Ok((outcomes, tracking))
     }
 
-    fn progress(&self, machines: u64) -> ProgressBar {
+    fn progress(&self, machines: u64) -> Progress {
         if !self.simulate && machines <= MAX_MACHINES || is_quiet() {
-            return ProgressBar::hidden();
+            return Progress::hidden();
         }
         let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} machines, {eta} left");
-        ProgressBar::new(machines).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        Progress::with_bar(ProgressBar::new(machines).with_style(style))
     }
 }

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use stillbase_session::Refusal;
-use stillbase_study::tolerance::{Batch, CHUNK, Ensemble, Mode, Sampler};
+use stillbase_study::tolerance::{Batch, CHUNK, Ensemble, GoesOn, Mode, Sampler};
 
 /// Number of chunks per thread in one wave; the results of a wave are passed on together. Simulations use one chunk.
 /// Between two waves, threads wait for the slowest; with many chunks, they wait for a small part of the time.
@@ -16,13 +16,14 @@ const CHUNKS_PER_THREAD: usize = 32;
 /// Gives every batch of machines of some ranges to one of several workers, in no order, and returns the workers.
 ///
 /// # Errors
-/// If a simulation fails.
+/// If a simulation fails, or `goes_on` returns `false`.
 pub fn share_out<W: Send>(
     ensemble: &Ensemble,
     mode: Mode,
     ranges: &[Range<u64>],
     worker: impl Fn() -> W,
     see: impl Fn(&mut W, &Batch) + Sync,
+    goes_on: GoesOn<'_>,
 ) -> Result<Vec<W>, Refusal> {
     let mut workers: Vec<W> = (0..thread::available_parallelism().map_or(1, usize::from)).map(|_| worker()).collect();
     for range in ranges.iter().filter(|range| !range.is_empty()) {
@@ -35,7 +36,7 @@ pub fn share_out<W: Send>(
                 if chunk >= after {
                     return Ok(());
                 }
-                match Batch::of(ensemble, &mut sampler, mode, chunk, range, false) {
+                match Batch::of(ensemble, &mut sampler, mode, chunk, range, (false, goes_on)) {
                     Ok(batch) => see(worker, &batch),
                     Err(why) => {
                         // The others end with the chunk that they have.
@@ -58,12 +59,12 @@ pub fn share_out<W: Send>(
 /// Evaluates every sample of a range, and calls `see` with the batches in order.
 ///
 /// # Errors
-/// If a simulation fails, or `see` returns an error.
+/// If a simulation fails, `goes_on` returns `false`, or `see` returns an error.
 pub fn evaluate<E: From<Refusal>>(
     ensemble: &Ensemble,
     mode: Mode,
     range: Range<u64>,
-    keep_deviations: bool,
+    (keep_deviations, goes_on): (bool, GoesOn<'_>),
     mut see: impl FnMut(Batch) -> Result<(), E>,
 ) -> Result<(), E> {
     let threads = thread::available_parallelism().map_or(1, usize::from);
@@ -84,7 +85,7 @@ pub fn evaluate<E: From<Refusal>>(
                     loop {
                         let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
                         let Some((chunk, batch)) = next else { break };
-                        *batch = Some(Batch::of(ensemble, sampler, mode, chunk, &range, keep_deviations));
+                        *batch = Some(Batch::of(ensemble, sampler, mode, chunk, &range, (keep_deviations, goes_on)));
                     }
                 });
             }

@@ -11,7 +11,7 @@ use stillbase_mechanics::balance::RebalanceRequest;
 use stillbase_mechanics::counterweights::{CounterweightSpec, CounterweightStock, Objective};
 use stillbase_mechanics::machine::Machine;
 use stillbase_mechanics::planar::Vector;
-use stillbase_query::{Shared, answer_now};
+use stillbase_query::Shared;
 use stillbase_session::scenario::MachineFile;
 use stillbase_settings::number::counted;
 use stillbase_simulation::plant::Base;
@@ -26,6 +26,7 @@ use super::holds::{apply_bounds, bound};
 use super::input::{self, Settings, floating_scenario};
 use super::new_machine::named_after;
 use super::output::{Format, say_written};
+use super::progress::answered;
 use super::sites::{range, sites};
 use super::strict::Strict;
 
@@ -157,7 +158,7 @@ impl TrimArguments {
             method,
             accelerations: Some(self.accelerations.clone()).filter(|all| !all.is_empty()),
         };
-        let found = answer_now::<TrimQuery>(request);
+        let found = answered::<TrimQuery>(request)?;
         if let Some(noise) = found.angle_noise {
             print_message(format!(
                 "note: {:.0} % of the accelerations is noise of the angles, or samples are too far apart: results \
@@ -214,12 +215,12 @@ impl TrimArguments {
             OrbitMotion::of(machine, &table).map_err(|why| Failure::wrong_input(why).with_context(file))
         };
         let motions = files.iter().map(motion).collect::<Result<Vec<_>, _>>()?;
-        let found = answer_now::<OrbitTrimQuery>(OrbitTrimRequest {
+        let found = answered::<OrbitTrimQuery>(OrbitTrimRequest {
             machine: Shared(machine.clone().into()),
             base,
             motions: Shared(motions.into()),
             as_given: self.as_given,
-        });
+        })?;
         found.doubt.iter().for_each(|doubt| print_message(format!("note: {doubt}")));
         let report = found.outcome.map_err(as_failure)?;
         self.format.print(&report, answer::orbit_text)?;

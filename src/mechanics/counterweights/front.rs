@@ -4,7 +4,7 @@ use super::place::{PlacedCounterweights, place_weights};
 use super::refusal::CounterweightError;
 use super::spec::{CounterweightSpec, Objective};
 use crate::machine::{Inertia, Machine};
-use stillbase_query::{Portion, ProgressCallback, Query, answer_now};
+use stillbase_query::{Portion, ProgressCallback, Query, answer_now, answer_while};
 
 /// Points of the Pareto front, from the least added mass to the least inertia: no machine is better than another in
 /// both.
@@ -36,6 +36,16 @@ const RELATIVE_TOLERANCE: f64 = 1e-9;
 /// As [`place_weights`], and if a rotor is free.
 pub fn front(machine: &Machine, request: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
     answer_now::<FrontSearch>((machine.clone(), request.clone(), count))
+}
+
+/// Does the same as [`front`]; `None` if `goes_on` ends the search. It is called between two points.
+pub fn front_while(
+    machine: &Machine,
+    request: &CounterweightSpec,
+    count: usize,
+    goes_on: ProgressCallback<'_>,
+) -> Option<Result<Front, CounterweightError>> {
+    answer_while::<FrontSearch>((machine.clone(), request.clone(), count), goes_on)
 }
 
 /// The search for the Pareto front that [`front`] returns; each portion of work finds one point.

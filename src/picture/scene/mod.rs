@@ -41,6 +41,8 @@ pub mod palette;
 pub mod pick;
 #[doc(hidden)]
 pub mod pointer;
+#[doc(hidden)]
+pub mod portrait;
 pub mod reaction;
 #[cfg(feature = "ui")]
 pub(crate) mod segment;

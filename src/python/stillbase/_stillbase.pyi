@@ -90,7 +90,7 @@ class Machine:
     def __repr__(self, /) -> str: ...
     def _repr_svg_(self, /) -> str:
         """
-        Draws the links, each flat and at scale 1 : 1, as `stillbase export-model` does for cutting; notebooks show it.
+        Draws the machine from above, with a scale; notebooks show it. The links for cutting are drawn by `export-model`.
 
         ```python
         >>> import stillbase as sb
@@ -162,7 +162,8 @@ class Machine:
         """
         Motor torques and base reactions of states of motion: absolute drive angles, rad, rates, rad/s, and
         accelerations, rad/s², each of shape (..., drives). They broadcast as arrays of NumPy do. `out` is an earlier
-        result of the same shape, which is overwritten. The numbers are those of `stillbase dynamics`, to the last bit.
+        result of the same shape, which is overwritten, after an interrupt in part. The numbers are those of `stillbase
+        dynamics`, to the last bit.
 
         ```python
         >>> import numpy as np, stillbase as sb
@@ -261,14 +262,16 @@ class Machine:
 
         ```
         """
-    def set(self, /, keys: dict[str, typing.Any]) -> Machine:
+    def set(self, /, keys: dict[str, typing.Any] | str, value: typing.Any = None) -> Machine:
         """
-        Returns the machine with keys set, such as `{"link.2.com": 0.22}`.
+        Returns the machine with a key set, such as `set("link.2.com", 0.22)`, or with several, as a dictionary.
 
         ```python
         >>> import stillbase as sb
-        >>> moved = sb.Machine.builtin("nine-link").set({"link.5.com": 0})
-        >>> moved.check()["force_balanced"]
+        >>> machine = sb.Machine.builtin("nine-link")
+        >>> machine.set("link.5.com", 0).check()["force_balanced"]
+        False
+        >>> machine.set({"link.5.com": 0, "gravity": (0, -9.81)}) == machine.set("link.5.com", 0)
         False
 
         ```
@@ -279,7 +282,7 @@ class Machine:
         constant meanwhile. Returns absolute drive angles, rad, and rates, rad/s, after the last step.
 
         `q`, `qd` and `torque` have the shape (..., drives), and broadcast as arrays of NumPy do. `out` is a pair of
-        arrays for the results, which may be `(q, qd)` itself.
+        arrays for the results, which may be `(q, qd)` itself. After an interrupt some states are advanced, others not.
 
         A step is one of the classical fourth-order Runge–Kutta method, as `stillbase simulate` makes it: to the last
         bit, where that needs no substeps. Nothing chooses the step here: the error of a state is of order dt⁴. Rates
@@ -356,23 +359,27 @@ class Machine:
 @final
 class Run:
     """
-    A simulated motion: the time, every signal by its name, and the verdict.
+    A simulated motion: a mapping of names to the arrays of its signals, the time, and the verdict.
 
     ```python
     >>> import stillbase as sb
     >>> run = sb.simulate("case-3")
     >>> float(abs(run["moment/total"]).max()) < 1e-8
     True
+    >>> "torque/1" in run, dict(run)["torque/1"] is run["torque/1"], run.get("torque/9") is None
+    (True, True, True)
 
     ```
     """
+    def __contains__(self, name: Any, /) -> bool: ...
     def __getitem__(self, name: str, /) -> Any:
         """
         Returns the signal of a name, such as `torque/1`.
         """
+    def __iter__(self, /) -> typing.Iterator[str]: ...
     def __len__(self, /) -> int:
         """
-        Returns the number of rows.
+        Returns the number of signals; `len(run.time)` is that of the rows.
         """
     def __repr__(self, /) -> str: ...
     def _repr_html_(self, /) -> str:
@@ -384,6 +391,39 @@ class Run:
         >>> table = sb.simulate("case-1")._repr_html_()
         >>> "<th>peak_base_moment</th><td>1.089" in table and "N m" in table
         True
+
+        ```
+        """
+    def get(self, /, name: Any, default: typing.Any = None) -> typing.Any:
+        """
+        The signal of a name, or `default` if there is none.
+
+        ```python
+        >>> import stillbase as sb
+        >>> sb.simulate("case-1").get("torque/9", 0)
+        0
+
+        ```
+        """
+    def items(self, /) -> typing.ItemsView[str, numpy.typing.NDArray[numpy.float64]]:
+        """
+        Names and arrays of the signals.
+
+        ```python
+        >>> import stillbase as sb
+        >>> {name: array.shape for name, array in sb.simulate("case-1", signals="torque/1").items()}
+        {'torque/1': (1001,)}
+
+        ```
+        """
+    def keys(self, /) -> typing.KeysView[str]:
+        """
+        Names of the signals.
+
+        ```python
+        >>> import stillbase as sb
+        >>> list(sb.simulate("case-1", signals="torque").keys())
+        ['torque/1', 'torque/2', 'torque/3']
 
         ```
         """
@@ -432,6 +472,17 @@ class Run:
         >>> import stillbase as sb
         >>> sb.simulate("case-1").units["torque/1"]
         'N m'
+
+        ```
+        """
+    def values(self, /) -> typing.ValuesView[numpy.typing.NDArray[numpy.float64]]:
+        """
+        Arrays of the signals.
+
+        ```python
+        >>> import stillbase as sb
+        >>> [array.shape for array in sb.simulate("case-1", signals="torque").values()]
+        [(1001,), (1001,), (1001,)]
 
         ```
         """

@@ -7,6 +7,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::summary::{OLD_NAMES, SummaryColumn};
 use super::{ComparedRun, DesignCandidate, DesignMeasures, SUMMARY_COLUMNS, Summary};
+use stillbase_session::ProgressCallback;
 use stillbase_session::scenario::Scenario;
 
 /// Results of a run, or why it failed.
@@ -51,9 +52,9 @@ impl BaselineMachines {
 }
 
 impl ComparisonTable {
-    /// Runs a scenario to its end and adds it as a row.
-    pub fn run(&mut self, alternative: Option<&'static str>, scenario: &Scenario) {
-        let outcome = ComparedRun::of(scenario.clone()).map_err(|why| why.to_string());
+    /// Runs a scenario to its end, or as long as `watch` returns `true`, and adds it as a row.
+    pub fn run(&mut self, alternative: Option<&'static str>, scenario: &Scenario, watch: ProgressCallback<'_>) {
+        let outcome = ComparedRun::of_while(scenario.clone(), watch).map_err(|why| why.to_string());
         let design = outcome.as_ref().ok().map(|run| self.baseline.set(&run.candidate));
         let outcome = outcome.map(|run| run.summary);
         self.rows.push(ComparisonRow { name: scenario.name.clone(), alternative, outcome, design });

@@ -82,18 +82,19 @@ impl DriveState {
     /// Runs a scenario, with its edits, to a time, s, and returns the state there.
     ///
     /// # Errors
-    /// Fails if the scenario cannot be run up to this time, or the run ends earlier.
-    pub fn at(scenario: &Scenario, time: f64) -> Result<Self, NoInstant> {
-        let (mut found, mut end) = (None, 0.0);
+    /// Fails if the scenario cannot be run up to this time, the run ends earlier, or `goes_on` ends it.
+    pub fn at(scenario: &Scenario, time: f64, goes_on: impl Fn() -> bool) -> Result<Self, NoInstant> {
+        let (mut found, mut end, mut stopped) = (None, 0.0, false);
         let done = replay_while(scenario, |_, frame| {
             end = frame.time;
             let is_there = frame.time >= time - 0.5 * scenario.step;
             found = is_there.then(|| Self::now(frame));
-            !is_there
+            stopped = !goes_on();
+            !(is_there || stopped)
         });
         match (found, done) {
             (Some(state), _) => Ok(state),
-            (None, Err(why)) if why != Refusal::Stopped => Err(why.into()),
+            (None, Err(why)) if stopped || why != Refusal::Stopped => Err(why.into()),
             _ => Err(NoInstant::Later { end }),
         }
     }

@@ -16,6 +16,9 @@ pub enum Mode<'a> {
     Simulated(&'a Run),
 }
 
+/// Returns whether work goes on; threads ask it at the same time.
+pub type GoesOn<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// Consecutive machines with their outcomes.
 #[derive(Clone, Debug)]
 pub struct Batch {
@@ -30,18 +33,21 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Computes the machines of a chunk that lie in a range.
+    /// Computes the machines of a chunk that lie in a range, with their deviations if requested.
     ///
     /// # Errors
-    /// Fails if one of them cannot be simulated.
+    /// Fails if one of them cannot be simulated, or `goes_on` returns `false`.
     pub fn of(
         ensemble: &Ensemble,
         sampler: &mut Sampler,
         mode: Mode,
         chunk: u64,
         range: &Range<u64>,
-        keep_deviations: bool,
+        (keep_deviations, goes_on): (bool, GoesOn<'_>),
     ) -> Result<Self, Refusal> {
+        if !goes_on() {
+            return Err(Refusal::Stopped);
+        }
         let first = chunk * CHUNK as u64;
         let samples = first.max(range.start)..(first + CHUNK as u64).min(range.end);
         let lanes = (samples.start - first) as usize..(samples.end - first) as usize;
@@ -51,7 +57,7 @@ impl Batch {
         let (outcomes, tracking) = match mode {
             Mode::Tracking => (tracking, Vec::new()),
             Mode::Simulated(run) => {
-                let simulated = |lane| simulate(run, &ensemble.machine_of(&deviations(lane))?);
+                let simulated = |lane| simulate(run, &ensemble.machine_of(&deviations(lane))?, goes_on);
                 (lanes.map(simulated).collect::<Result<_, _>>()?, tracking)
             }
         };

@@ -40,7 +40,7 @@ mod study;
 mod summary;
 
 pub use bands::{Agreement, BandDifference, Bands, ForceBand, MomentBand, PERCENTILES};
-pub use batch::{Batch, Mode};
+pub use batch::{Batch, GoesOn, Mode};
 pub use deviate::{CHUNK, inverse_normal};
 pub use ensemble::{Ensemble, SampleOutcome, Sampler};
 pub use error::ToleranceError;

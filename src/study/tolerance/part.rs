@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{
-    Agreement, Bands, Distributions, Ensemble, Limits, SampleOutcome, Shares, TrackingComparison, UncertainParameter,
-    Yields, simulate,
+    Agreement, Bands, Distributions, Ensemble, GoesOn, Limits, SampleOutcome, Shares, TrackingComparison,
+    UncertainParameter, Yields, simulate,
 };
 use stillbase_session::{Refusal, Run};
 
@@ -91,15 +91,15 @@ impl PartReport {
     /// Returns the report on assessed machines.
     ///
     /// # Errors
-    /// Fails if the machines were simulated, but the nominal machine cannot be.
-    pub fn of(part: &EnsemblePart<'_>, results: PartResults) -> Result<Self, Refusal> {
+    /// Fails if the machines were simulated, but the nominal machine cannot be, or `goes_on` ends that.
+    pub fn of(part: &EnsemblePart<'_>, results: PartResults, goes_on: GoesOn<'_>) -> Result<Self, Refusal> {
         let &EnsemblePart { run, ensemble, samples, ref machines, simulated } = part;
         let PartResults { distributions, yields, against_tracking } = results;
         let bands = Bands::of(ensemble, samples);
         // Computed like the other machines: simulated with the same base, control and friction, or with perfect
         // tracking.
         let nominal = match simulated {
-            true => simulate(run, ensemble.machine())?,
+            true => simulate(run, ensemble.machine(), goes_on)?,
             false => ensemble.nominal_outcome(),
         };
         Ok(Self {

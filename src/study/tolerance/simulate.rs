@@ -1,5 +1,6 @@
 //! Simulation of a varied machine under control that knows only the nominal one.
 
+use super::batch::GoesOn;
 use super::ensemble::SampleOutcome;
 use stillbase_mechanics::machine::Machine;
 use stillbase_session::{Refusal, Run};
@@ -7,11 +8,15 @@ use stillbase_simulation::frame::Frame;
 use stillbase_simulation::plant::{Load, PlantDifferences};
 use stillbase_simulation::{Setup, Simulation};
 
+/// Number of steps after which `goes_on` is asked again; they take some milliseconds.
+const STEPS_PER_QUESTION: u64 = 256;
+
 /// Simulates a planned motion, control included, with another machine as the plant.
 ///
 /// # Errors
 /// If the plant cannot hold its payload, the state diverges, or an audit fails: a study has no values of such runs.
-pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal> {
+/// Also if `goes_on` returns `false`.
+pub fn simulate(planned: &Run, plant: &Machine, goes_on: GoesOn<'_>) -> Result<SampleOutcome, Refusal> {
     let scenario = planned.scenario();
     let guide = planned.plan().guide(&scenario.machine);
     // A payload held from the start is part of the varied machine; a payload taken up later is not.
@@ -27,6 +32,9 @@ pub fn simulate(planned: &Run, plant: &Machine) -> Result<SampleOutcome, Refusal
     let on_base = |frame: &Frame| if has_wheel { frame.felt_moment } else { frame.base_moment() };
     loop {
         let frame = simulation.frame();
+        if frame.step.is_multiple_of(STEPS_PER_QUESTION) && !goes_on() {
+            return Err(Refusal::Stopped);
+        }
         if !frame.is_finite() {
             return Err(Refusal::Diverged { time: frame.time });
         }

@@ -101,6 +101,7 @@ impl Bar {
     pub(super) fn flat(&self, e: &UnitVectors) -> FlatLink {
         let (root, along, _) = self.pose(e);
         FlatLink {
+            name: self.name.clone(),
             ends: self.span.map(|s| root + along * s),
             radius: self.radius,
             covers: self.covers.iter().map(|cover| cover.flat(root, along)).collect(),

@@ -4,6 +4,8 @@ use stillbase_mechanics::planar::Vector;
 
 /// A link seen from straight above.
 pub struct FlatLink {
+    /// Its name.
+    pub name: String,
     /// Its drawn ends, m.
     pub ends: [Vector; 2],
     /// Half the width of its bar, m; 0 if it is made of plates alone.
