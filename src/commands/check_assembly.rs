@@ -43,7 +43,7 @@ fn text(assembly: &Assembly, report: &AssemblyReport) -> String {
     for group in &report.parallel {
         let names = group.join(", ");
         text.push_str(&format!(
-            "\nblocks {names}: parallel planes, so each may change its b if Σ D_1 b̈ = 0 over them\n"
+            "\nblocks {names}: parallel planes, so each may change its b if Σ D_1 b̈ = 0 over them, counted about one axis\n"
         ));
     }
     text

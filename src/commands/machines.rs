@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
+use stillbase_mechanics::assembly::{Assembly, builtin_assemblies, builtin_text};
 use stillbase_mechanics::machine::{Machine, builtins};
 use stillbase_mechanics::sketch::Template;
 use stillbase_session::scenario::MachineFile;
@@ -38,6 +39,16 @@ pub struct Answer {
     machines: Vec<Row>,
     /// Templates from which a person draws; each is a machine, too.
     templates: Vec<Row>,
+    /// Assemblies of several machines.
+    assemblies: Vec<AssemblyRow>,
+}
+
+#[derive(JsonSchema, Serialize)]
+struct AssemblyRow {
+    name: String,
+    /// Names of the blocks.
+    blocks: Vec<String>,
+    summary: String,
 }
 
 #[derive(JsonSchema, Serialize)]
@@ -59,6 +70,9 @@ impl MachinesArguments {
     /// Prints the machines.
     pub fn run(&self) -> Result<(), Failure> {
         if let Some(name) = &self.name {
+            if let Some(text) = builtin_text(name) {
+                return self.print_assembly(name, text);
+            }
             let MachineFile { machine, design } = machine(name)?;
             return self.print(&MachineFile { machine: self.settings.apply(machine)?, design });
         }
@@ -73,7 +87,13 @@ impl MachinesArguments {
         let row =
             |template: Template| Some(Row::of(template.word(), &template.sketch().machine()?, template.summary()));
         let templates = Template::ALL.into_iter().filter_map(row).collect();
-        self.format.print(&Answer { machines, templates }, |answer| {
+        let names = |own: &Assembly| own.blocks().iter().map(|block| block.name.clone()).collect();
+        let row = |own: &Assembly| {
+            let (name, summary) = (own.name.clone(), own.summary.clone());
+            AssemblyRow { name, blocks: names(own), summary }
+        };
+        let assemblies = builtin_assemblies().iter().map(row).collect();
+        self.format.print(&Answer { machines, templates, assemblies }, |answer| {
             let list = |head: &str, rows: &[Row]| {
                 let mut table = TextTable::new([head, "drives", "links", ""]).with_words(3);
                 for m in rows {
@@ -81,8 +101,21 @@ impl MachinesArguments {
                 }
                 table.to_string()
             };
-            format!("{}\n{}", list("machine", &answer.machines), list("template", &answer.templates))
+            let mut several = TextTable::new(["assembly", "blocks", ""]).with_words(3);
+            for own in &answer.assemblies {
+                several.row([own.name.clone(), own.blocks.join(", "), own.summary.clone()]);
+            }
+            format!("{}\n{}\n{several}", list("machine", &answer.machines), list("template", &answer.templates))
         })
+    }
+
+    /// Prints the file of an assembly.
+    fn print_assembly(&self, name: &str, text: &str) -> Result<(), Failure> {
+        if self.new.is_wanted() || !self.settings.is_empty() {
+            let why = format!("{name} is an assembly: want no -o and no --set, its text goes to standard output");
+            return Err(Failure::wrong_input(why));
+        }
+        print_text(text)
     }
 
     /// Prints a machine as TOML, or writes it to a file.
@@ -92,7 +125,11 @@ impl MachinesArguments {
             return self.new.save(&file.machine, &file.design, file.machine.spec().summary.clone());
         }
         let text = file.to_toml();
-        let mut out = io::stdout().lock();
-        out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
+        print_text(&text)
     }
+}
+
+fn print_text(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| Failure::standard_output(&e))
 }

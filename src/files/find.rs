@@ -9,10 +9,10 @@ use super::recorded_case::RecordedCase;
 use super::recorded_case::is_recording;
 use super::text::{STANDARD_INPUT, read};
 use stillbase_exchange::import::{ImportedMachine, faults, import};
-use stillbase_mechanics::assembly::{self, Assembly};
+use stillbase_mechanics::assembly::{self, Assembly, builtin_assemblies};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
-use stillbase_session::assembly::AssemblyScenario;
+use stillbase_session::assembly::{AssemblyScenario, builtin_scenario_text};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::{DesignBrief, FileContent, MachineFile, Scenario, ScenarioError, TaskKind, content};
 use stillbase_session::with_start_edits;
@@ -126,12 +126,15 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
     }
 }
 
-/// Returns the assembly that a file holds; `None` for anything else. A machine file that it names is resolved in its
+/// Returns an assembly by built-in name or by file; `None` for anything else. A machine file that it names is resolved in its
 /// folder.
 ///
 /// # Errors
 /// If the file describes an assembly that is wrong.
 pub fn assembly(name: &str) -> Result<Option<Assembly>, FileError> {
+    if let Some(known) = builtin_assemblies().iter().find(|own| own.name == name) {
+        return Ok(Some(known.clone()));
+    }
     let file = Path::new(name);
     // What is no text, or is not there, is told by the reader of machines.
     let text = if known_machine(name).is_some() { None } else { read(file).ok() };
@@ -150,11 +153,16 @@ pub fn assembly_scenario<E: From<ScenarioError>>(
     apply: impl FnOnce(Assembly) -> Result<Assembly, E>,
 ) -> Result<Option<AssemblyScenario>, E> {
     let file = Path::new(name);
-    let text = if Scenario::builtin(name).is_some() { None } else { read(file).ok() };
+    let text = match builtin_scenario_text(name) {
+        Some(text) => Some(text.to_owned()),
+        None if Scenario::builtin(name).is_some() => None,
+        None => read(file).ok(),
+    };
     let table: Option<toml::Table> = text.as_ref().and_then(|text| text.parse().ok());
     let Some((text, table)) = text.zip(table) else { return Ok(None) };
     let Some(machine) = table.get("machine").and_then(toml::Value::as_str) else { return Ok(None) };
-    let beside = file.parent().map_or_else(|| machine.into(), |folder| folder.join(machine));
+    let is_known = builtin_assemblies().iter().any(|own| own.name == machine);
+    let beside = file.parent().filter(|_| !is_known).map_or_else(|| machine.into(), |folder| folder.join(machine));
     let found = assembly(&beside.display().to_string()).map_err(ScenarioError::from)?;
     let Some(found) = found else { return Ok(None) };
     let assembly = apply(found)?;

@@ -1,6 +1,7 @@
 //! Files of assemblies.
 
 use serde::{Deserialize, Serialize};
+use toml::Value;
 
 use super::model::{Assembly, AssemblyError};
 use super::words::AssemblyWords;
@@ -58,8 +59,11 @@ pub enum AssemblyKind {
 pub struct BlockSpec {
     /// Its name in the assembly.
     pub name: String,
-    /// Name or file of the machine.
-    pub machine: String,
+    /// Name or file of the machine, or the whole machine as a table.
+    pub machine: Value,
+    /// Settings of the machine, as on the command line: `payload.mass=0.5`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
     /// `"base"`, or the block on whose platform it sits.
     #[serde(default = "base")]
     pub on: String,

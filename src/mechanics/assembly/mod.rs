@@ -24,6 +24,7 @@
 //! Papadopoulos and Abu-Abed, §6: machines of more degrees of freedom from reactionless ones as building blocks.
 
 mod block;
+mod catalog;
 mod condition;
 mod file;
 mod free_base;
@@ -32,6 +33,7 @@ mod motion;
 mod words;
 
 pub use block::{Block, Mount};
+pub use catalog::{builtin_assemblies, builtin_text};
 pub use condition::{BlockConditions, CarriedOffset, Reacting};
 pub use file::{AssemblySpec, BlockSpec, FindMachine, parse};
 pub use free_base::{Attitude, BaseMotion, SpatialBase};

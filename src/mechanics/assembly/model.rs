@@ -1,12 +1,13 @@
 //! [`Assembly`]: checked blocks, with the order in which they carry each other.
 
 use nalgebra::{Matrix3, Vector3};
+use toml::Value;
 
 use super::block::{Block, Mount};
 use super::file::{AssemblySpec, BlockSpec, FindMachine};
-use crate::machine::{KeyPath, Machine};
+use crate::machine::{KeyPath, Machine, MachineSpec};
 use crate::planar::MAX_DRIVES;
-use stillbase_settings::range::{quote_clipped, shortened};
+use stillbase_settings::range::{MAX_SAID, quote_clipped, shortened};
 use stillbase_settings::text::control_character;
 
 /// Maximum number of blocks.
@@ -185,11 +186,25 @@ fn resolved(spec: &AssemblySpec, i: usize, block: &BlockSpec, find: FindMachine<
     };
     let at = vector(&block.at).ok_or_else(|| wrong("at", numbers_wanted(&block.at, "m")))?;
     let axes = axes(i, block)?;
-    let machine = find(&block.machine).map_err(|why| wrong("machine", shortened(&why.to_string(), 400)))?;
+    let machine = match &block.machine {
+        Value::String(name) => find(name).map_err(|why| wrong("machine", shortened(&why.to_string(), MAX_SAID)))?,
+        Value::Table(whole) => {
+            let read: Result<MachineSpec, _> = whole.clone().try_into();
+            let spec = read.map_err(|why| wrong("machine", shortened(why.message(), MAX_SAID)))?;
+            Machine::new(spec).map_err(|why| wrong("machine", shortened(&why.to_string(), MAX_SAID)))?
+        }
+        _ => return Err(wrong("machine", "want the name or file of a machine, or a whole machine as a table".into())),
+    };
+    let mut settings = Vec::with_capacity(block.set.len());
+    for setting in &block.set {
+        let pair = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+        settings.push(pair.ok_or_else(|| wrong("set", format!("is {:?}: want KEY=VALUE", quote_clipped(setting))))?);
+    }
+    let machine = machine.set_all(settings).map_err(|why| wrong("set", shortened(&why.to_string(), MAX_SAID)))?;
     if machine.spec().gravity != [0.0; 2] {
         let said =
             "states gravity in its own plane: want gravity = [x, y, z] of the assembly, and none of its machines";
-        return Err(wrong("machine", format!("{} {said}", quote_clipped(&block.machine))));
+        return Err(wrong("machine", format!("{} {said}", quote_clipped(machine.name()))));
     }
     if machine.drives() >= MAX_DRIVES {
         let most = MAX_DRIVES - 1;

@@ -15,6 +15,7 @@ const ROWS: &[WordRow] = &[
     row("block.*", "block *", "", ""),
     row("block.*.name", "name of block *", "a text in quotes, a name of its own", "\"arm\""),
     row("block.*.machine", "machine of block *", "the name or file of a machine", "\"nine-link\""),
+    row("block.*.set", "settings of the machine of block *", "a list of KEY=VALUE", "[\"payload.mass=0.5\"]"),
     row("block.*.on", "what carries block *", "\"base\", or the name of a block", "\"base\""),
     row("block.*.at", "place of block *", "three numbers, m, in axes of the base", "[0.0, 0.0, 0.0]"),
     row("block.*.x", "direction x of block *", DIRECTION, "[1, 0, 0]"),

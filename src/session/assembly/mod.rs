@@ -4,10 +4,12 @@
 //! of one machine. The blocks then follow their references without error; what they put on the base together is computed in
 //! space. Friction, feedback and payloads unknown to the model are left to scenarios of one machine.
 
+mod catalog;
 mod file;
 mod run;
 mod signals;
 
+pub use catalog::{builtin_assembly_scenarios, builtin_scenario_text};
 pub use file::{AssemblyBase, AssemblyScenario, BlockTask};
 pub use run::{AssemblyFrame, AssemblyRun, AssemblyVerdict};
 pub use signals::{AssemblySignal, assembly_signals};

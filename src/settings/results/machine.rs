@@ -70,6 +70,10 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("ground_left", "kg m²", "Largest |C_0k|: coupling with what is carried beside the end effector."),
     row("tilt_left", "kg m²", "Largest first moment of a drive weighted with heights, which tilts the base."),
     row("blocks.reasons", "", "Why the block reacts, and what would be right."),
+    row("assemblies", "", "The built-in assemblies of several machines."),
+    row("assemblies.blocks", "", "Names of the blocks."),
+    row("silent_force", "", "Whether each component of the force, x, y, z, is silent."),
+    row("silent_moment", "", "Whether each component of the moment, x, y, z, is silent."),
     row("parallel", "", "Groups of blocks with parallel planes, which may change their b together."),
     // Equations.
     row("learn.time", "s", "Time of the run."),
