@@ -26,6 +26,9 @@ use stillbase_simulation::plant::{Base, BaseKind};
 const IS_ASSEMBLY: &str =
     "this is an assembly of several machines: want one machine; check, dynamics and simulate take an assembly, too";
 
+const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; simulate takes \
+                              this one, too";
+
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
 
@@ -90,6 +93,9 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
         let of_scenario = machine_of(&found.scenario, name)?;
         let left_out = found.note.into_iter().chain(of_scenario.left_out).collect();
         return Ok(FoundMachine { left_out, ..of_scenario });
+    }
+    if builtin_assemblies().iter().any(|own| own.name == name) {
+        return Err(wrong_file(name, Faults::one(whole_file(IS_ASSEMBLY))));
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
@@ -229,6 +235,9 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     }
     if let Some(scenario) = recorded(name) {
         return scenario;
+    }
+    if builtin_scenario_text(name).is_some() {
+        return Err(wrong_file(name, Faults::one(whole_file(IS_OF_ASSEMBLY))).into());
     }
     let file = Path::new(name);
     let text = match read(file) {

@@ -22,6 +22,7 @@ pages! {
     planning: "planning.md",
     plants: "plants.md",
     spacecraft: "spacecraft.md",
+    assemblies: "assemblies.md",
     inside: "inside.md",
     draw: "draw.md",
     design: "design.md",

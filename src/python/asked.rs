@@ -272,7 +272,7 @@ impl Line {
 }
 
 /// Carries out a command line as the program does, and returns its exit status. The first word is the name of the
-/// program.
+/// program. With `ends_process` signals end the process at once and leave no half-written file, as they do for the program.
 ///
 /// ```python
 /// >>> from stillbase._stillbase import main
@@ -281,6 +281,10 @@ impl Line {
 ///
 /// ```
 #[pyfunction]
-pub fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
+#[pyo3(signature = (words, ends_process=false))]
+pub fn main(py: Python<'_>, words: Vec<OsString>, ends_process: bool) -> u8 {
+    if ends_process {
+        stillbase_commands::watch();
+    }
     py.detach(|| stillbase_commands::carry_out(words))
 }

@@ -75,6 +75,9 @@ pub struct CounterweightReport {
     /// Upper bound on the difference between the objective's value and its minimum. Of discs as they are bought nothing
     /// is certified: their value less that of the exact discs, which can be below 0.
     pub gap: f64,
+    /// The gap as a share of the value; `None` of discs as they are bought.
+    #[serde(skip)]
+    pub relative_gap: Option<f64>,
     /// Whether the gap is within rounding.
     pub certified: bool,
     /// Pareto front: added mass, kg, and Σ D_k, kg m².
@@ -249,7 +252,7 @@ pub fn balance_by_weights(
     let mut report = CounterweightReport::of(&placed, front, motion, &weighing)?;
     (report.optimised_lengths, report.bars) = (sought, bars);
     if let Some(exact) = report.bars.as_ref().and_then(|bars| bars.exact_value) {
-        report.gap = placed.value - exact;
+        (report.gap, report.relative_gap) = (placed.value - exact, None);
     }
     report.taken_off = removed_weights(machine);
     Ok((placed.machine, report))
@@ -293,6 +296,7 @@ impl CounterweightReport {
             weights: removed_weights(machine),
             taken_off: Vec::new(),
             gap: placed.gap,
+            relative_gap: Some(placed.relative_gap()).filter(|gap| gap.is_finite()),
             certified: placed.is_certified(),
             front: front_points.iter().map(FrontPoint::measures).collect(),
             front_points,

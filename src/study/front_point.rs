@@ -29,11 +29,11 @@ pub struct FrontPoint {
     /// Largest |g_k| if every counterweight deviates by the usual tolerance ([`PlacementTolerance::DEFAULT`]), kg m.
     #[serde(rename = "off_by")]
     pub residual_if_misplaced: f64,
-    /// Upper bound of what its mass or Σ D_k lies above the least for the other, kg or kg m²; `None` for discs as they are
-    /// bought.
+    /// Upper bound of how far the measure that was minimised, mass or Σ D_k, lies above its minimum, as a share of it;
+    /// `None` for discs as they are bought. At the ends of the front the other measure is not minimised.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub gap: Option<f64>,
-    /// Whether the gap is within rounding.
+    pub relative_gap: Option<f64>,
+    /// Whether this gap is within rounding.
     pub certified: bool,
 }
 
@@ -89,7 +89,7 @@ impl FrontPoint {
             torque: motion.map(|motion| greatest_torque(machine, motion)),
             workspace: workspace.then(|| plane_area(machine)).flatten(),
             residual_if_misplaced: worst_residual(machine, &PlacementTolerance::DEFAULT).force,
-            gap: Some(placed.gap).filter(|gap| gap.is_finite()),
+            relative_gap: Some(placed.relative_gap()).filter(|gap| gap.is_finite()),
             certified: placed.is_certified(),
         }
     }

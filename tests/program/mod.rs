@@ -1,5 +1,6 @@
 //! The program, from outside.
 
+mod assemblies;
 mod dynamics;
 #[cfg(feature = "ui")]
 mod figures;

@@ -214,6 +214,10 @@ fn summaries_say_what_every_machine_says() {
     json(&["tolerance", "--merge", "first.parquet", "last.parquet", "-o", "gap.parquet"]);
     let said = said_in(&folder, &[&study[..], &["--exact", "gap.parquet"]].concat(), 0);
     assert!(said.contains("machines 1666 to 3332 are in no part"), "{said}");
+    let found = json(&[&study[..], &["--exact", "gap.parquet"]].concat());
+    assert_eq!(found["missing"], json!([[1666, 3333]]));
+    let said = said_in(&folder, &[&study[..], &["--exact", "gap.parquet", "--strict"]].concat(), 1);
+    assert!(said.contains("1667 of 5000 machines in no part"), "{said}");
     // Some parts are merged as they are, and what is missing is said.
     let some = json(&["tolerance", "--merge", "b.parquet", "-o", "some.parquet"]);
     let said = said_in(&folder, &["tolerance", "--merge", "b.parquet", "-o", "strict.parquet", "--strict"], 1);

@@ -3,6 +3,7 @@
 mod afloat;
 mod any_drives;
 mod around;
+mod assembly;
 mod bounds;
 mod branches;
 mod cases;

@@ -32,6 +32,7 @@ pages! {
     Planning: "planning",
     Plants: "plants",
     Spacecraft: "spacecraft",
+    Assemblies: "assemblies",
     Inside: "inside",
     Draw: "draw",
     Design: "design",

@@ -24,7 +24,7 @@ use super::super::rows::{RowTarget, Rows};
 use super::super::tolerance::parse_shard;
 use super::DesignArguments;
 use super::brief::report_brief;
-use super::weighed::{VARIED_OPTIONS, gap_cell, report_removed};
+use super::weighed::{VARIED_OPTIONS, WeightArguments, gap_cell, report_removed};
 
 /// Which settings vary, and where the designs go.
 #[derive(Args)]
@@ -91,16 +91,16 @@ fn axis(text: &str) -> Result<Axis, String> {
 pub struct BestDesign {
     /// Number of the point, from 0.
     point: u64,
-    /// The settings as options: with the other options of the study they find this design alone.
+    /// The settings as options: with the other options of the study they find this design alone, or its whole front.
     options: String,
     /// Added mass, kg.
     added_mass: f64,
     /// Σ D_k, kg m².
     inertia: f64,
-    /// Upper bound on what the objective may lie above its minimum: of a front mass or Σ D_k, with a bound on the other.
-    /// Absent for discs as they are bought.
+    /// Upper bound on how far the objective lies above its minimum, as a share of it; of a front that of mass or Σ D_k, with
+    /// a bound on the other. Absent for discs as they are bought.
     #[serde(skip_serializing_if = "Option::is_none")]
-    gap: Option<f64>,
+    relative_gap: Option<f64>,
     /// Whether the gap is within rounding.
     certified: bool,
 }
@@ -139,7 +139,7 @@ const MAX_REASONS: usize = 3;
 
 /// Columns of numbers after those of the settings.
 const HEADS: [&str; 7] =
-    ["added_mass kg", "inertia kg m²", "torque N m", "workspace m²", "off_by kg m", "gap 1", "certified 1"];
+    ["added_mass kg", "inertia kg m²", "torque N m", "workspace m²", "off_by kg m", "relative_gap 1", "certified 1"];
 
 impl DesignArguments {
     /// Finds the counterweights at every point, and prints the best.
@@ -160,7 +160,8 @@ impl DesignArguments {
         }
         let target = RowTarget::wanted(&self.format, &of.form, of.table.as_deref(), self.new_machine.replaces())?;
         let brief = self.weighing.brief(machine, design);
-        report_brief(self.machine.name(), design, &brief, |key| self.weighing.asks_for(key));
+        let varies = |key: &str| space.axes().iter().any(|axis| WeightArguments::key_of(&axis.key) == Some(key));
+        report_brief(self.machine.name(), design, &brief, |key| self.weighing.asks_for(key) && !varies(key));
         report_removed(machine, "");
         let mut table = target.map(|to| DesignTable::begin(&to, space.axes())).transpose()?;
         let mut findings = Findings::default();
@@ -180,7 +181,7 @@ impl DesignArguments {
                     }
                 }
                 Err(Failure::NoAnswer(why) | Failure::WrongInput(why)) => {
-                    write(point, &values, &why, [None; 7])?;
+                    write(point, &values, &why, [None; HEADS.len()])?;
                     findings.refuse(Reason { why, point });
                 }
                 Err(why) => return Err(why.with_context(typed_settings(space.axes(), &values))),
@@ -218,8 +219,12 @@ impl DesignArguments {
         for Axis { key, values } in axes {
             let wrong = |why: &str| Failure::wrong_input(format!("--vary {key}: {why}"));
             let is_option = VARIED_OPTIONS.contains(&key.as_str());
-            if if is_option { self.weighing.gives(key) } else { self.machine.sets(key) } {
+            let is_given = if is_option { self.weighing.gives(key) } else { self.machine.sets(key) };
+            if is_given {
                 return Err(wrong("it is given by another option, too: want one of both"));
+            }
+            if key == "objective" && self.weighing.has_front() {
+                return Err(wrong("a front minimises mass and inertia, so it has no effect: want no --front"));
             }
             if !is_option && (!KEYS.iter().any(|own| own.matches(key)) || !machine.uses(key, false)) {
                 let options = VARIED_OPTIONS.join(", ");
@@ -227,9 +232,13 @@ impl DesignArguments {
                     "no setting of this machine: want a key of --set, as length.NAME or payload.mass, or one of {options}"
                 )));
             }
-            if let (true, AxisValues::Listed(all)) = (is_option, values) {
+            if is_option {
                 let mut tried = (*self.weighing).clone();
-                all.iter().try_for_each(|word| tried.give(key, word)).map_err(|why| wrong(&why))?;
+                let words: Vec<String> = match values {
+                    AxisValues::Listed(all) => all.clone(),
+                    AxisValues::Between(ends) => ends.iter().map(f64::to_string).collect(),
+                };
+                words.iter().try_for_each(|word| tried.give(key, word)).map_err(|why| wrong(&why))?;
             }
         }
         Ok(())
@@ -333,9 +342,9 @@ impl Findings {
 
 impl BestDesign {
     fn of(point: u64, options: String, measures: &[Option<f64>; HEADS.len()]) -> Self {
-        let [added_mass, inertia, .., gap, certified] = *measures;
+        let [added_mass, inertia, .., relative_gap, certified] = *measures;
         let [added_mass, inertia] = [added_mass, inertia].map(|x| x.unwrap_or(f64::NAN));
-        Self { point, options, added_mass, inertia, gap, certified: certified == Some(1.0) }
+        Self { point, options, added_mass, inertia, relative_gap, certified: certified == Some(1.0) }
     }
 }
 
@@ -354,12 +363,11 @@ fn measures(machine: &Machine, report: &CounterweightReport) -> Vec<[Option<f64>
     if report.front_points.is_empty() {
         let inertia = Inertia::of(machine).total_momentum();
         let added = Some(report.measures.added_mass);
-        let gap = Some(report.gap).filter(|gap| gap.is_finite());
-        return vec![[added, Some(inertia), report.torque, None, None, gap, is(report.certified)]];
+        return vec![[added, Some(inertia), report.torque, None, None, report.relative_gap, is(report.certified)]];
     }
     let of = |p: &FrontPoint| {
         let off_by = Some(p.residual_if_misplaced);
-        [Some(p.added_mass), Some(p.inertia), p.torque, p.workspace, off_by, p.gap, is(p.certified)]
+        [Some(p.added_mass), Some(p.inertia), p.torque, p.workspace, off_by, p.relative_gap, is(p.certified)]
     };
     report.front_points.iter().map(of).collect()
 }
@@ -372,9 +380,9 @@ fn kept(all: Vec<BestDesign>) -> Vec<BestDesign> {
 
 fn text(answer: &Answer) -> String {
     let [from, to] = answer.shard;
-    let mut table = TextTable::new(["point", "added kg", "Σ D_k kg m²", "gap", "settings"]).with_words(4);
+    let mut table = TextTable::new(["point", "added kg", "Σ D_k kg m²", "relative gap", "settings"]).with_words(4);
     for design in &answer.best {
-        let gap = gap_cell(design.gap, design.certified);
+        let gap = gap_cell(design.relative_gap, design.certified);
         let [mass, inertia] = [design.added_mass, design.inertia].map(|x| fixed_or_finer(x, 6));
         table.row([design.point.to_string(), mass, inertia, gap, design.options.clone()]);
     }

@@ -109,7 +109,8 @@ pub struct WeightArguments {
     #[arg(long, value_name = "S", requires = "length", value_parser = number)]
     seconds: Option<f64>,
     /// Show the Pareto front of mass and inertia as N machines, from minimum mass to minimum inertia. Each row also
-    /// gives torque (with --task), workspace, and the maximum |g_k| if masses are 1 % and places 0.5 mm off
+    /// gives torque (with --task), workspace, the maximum |g_k| if masses are 1 % and places 0.5 mm off, and how far its
+    /// mass or Σ D_k may lie above the minimum
     #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
     front: Option<u16>,
     /// Cut the links from flat bars of this width and thickness, m, of a material; default: aluminium. Tails, arms and
@@ -131,6 +132,18 @@ pub const VARIED_OPTIONS: [&str; 9] =
     ["material", "thickness", "across", "clearance", "max-mass", "max-radius", "max-added", "max-inertia", "objective"];
 
 impl WeightArguments {
+    /// Returns the key of a brief, without `design.`, that one of [`VARIED_OPTIONS`] overrules.
+    pub fn key_of(option: &str) -> Option<&'static str> {
+        match option {
+            "material" => Some("density"),
+            "thickness" => Some("thickness"),
+            "across" => Some("across"),
+            "clearance" => Some("clearance"),
+            "max-mass" => Some("heaviest"),
+            _ => None,
+        }
+    }
+
     /// Returns whether one of [`VARIED_OPTIONS`] is given.
     pub fn gives(&self, option: &str) -> bool {
         match option {
@@ -147,6 +160,9 @@ impl WeightArguments {
     pub fn give(&mut self, option: &str, word: &str) -> Result<(), String> {
         match option {
             "max-mass" => self.max_mass.push(number(word)?.to_string()),
+            "objective" if word.contains('=') => {
+                return Err("want mass, inertia, momentum or torque: a weighted sum cannot vary".into());
+            }
             "objective" => self.objective = Some(objective(word)?),
             option => {
                 let value = if option == "material" { density(word)? } else { number(word)? };
@@ -285,6 +301,11 @@ impl WeightArguments {
             payload: brief.payload,
             ..CounterweightSpec::least(objective, sites, stock)
         })
+    }
+
+    /// Returns whether a Pareto front is asked for.
+    pub fn has_front(&self) -> bool {
+        self.front.is_some()
     }
 
     /// Returns the number of machines of a Pareto front; two by default.
@@ -517,17 +538,18 @@ fn objective(text: &str) -> Result<Objective, String> {
 }
 
 /// Columns of the table of a Pareto front.
-pub const FRONT_HEADINGS: [&str; 6] = ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m", "gap"];
+pub const FRONT_HEADINGS: [&str; 6] =
+    ["added kg", "Σ D_k kg m²", "torque N m", "workspace m²", "off by kg m", "relative gap"];
 
 /// Returns the cells of one machine of a Pareto front.
 pub fn front_cells(point: &FrontPoint) -> [String; 6] {
     let or_none = |x: Option<f64>| x.map_or_else(|| "–".into(), |x| fixed_or_finer(x, 6));
-    let FrontPoint { added_mass, inertia, torque, workspace, residual_if_misplaced, gap, certified } = *point;
+    let FrontPoint { added_mass, inertia, torque, workspace, residual_if_misplaced, relative_gap, certified } = *point;
     let [added_mass, inertia, off_by] = [added_mass, inertia, residual_if_misplaced].map(|x| fixed_or_finer(x, 6));
-    [added_mass, inertia, or_none(torque), or_none(workspace), off_by, gap_cell(gap, certified)]
+    [added_mass, inertia, or_none(torque), or_none(workspace), off_by, gap_cell(relative_gap, certified)]
 }
 
-/// Returns the gap to the minimum, and whether it is certified.
+/// Returns the relative gap to the minimum, and whether it is certified.
 pub fn gap_cell(gap: Option<f64>, certified: bool) -> String {
     let mark = if certified { "" } else { ", not certified" };
     gap.map_or_else(|| "–".into(), |gap| format!("{gap:.1e}{mark}"))

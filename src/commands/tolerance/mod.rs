@@ -3,6 +3,7 @@
 mod parallel;
 mod report;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -48,11 +49,12 @@ Examples:
   stillbase tolerance case-1 --simulate --samples 500
 
 A file has one row a machine: its number, its parameters, peak |n_B|, peak dynamic |f_B|, and the root mean square of
-both over time. Its head holds a checksum of it all, which --merge looks at. Machine i depends on the seed and on i only, so shards put together are the whole, exactly.
+both over time. Its head holds a checksum of it all, which --merge looks at. Machine i depends on the seed and on i only,
+so shards put together are the whole, exactly.
 
 A summary counts machines in bins at most 0.1 % wide instead, with extremes and exact sums for each power of two. It
-takes some 60 kB for a million machines, less than 1 MB for any number, and merging is addition. With --simulate it compares nothing with
-perfect tracking.
+takes some 60 kB for a million machines, less than 1 MB for any number, and merging is addition. With --simulate it
+compares nothing with perfect tracking.
 
 JSON keys: scenario, simulated, samples, shard [from, to), seed, duration; parameters [{key, unit, nominal, spread,
 deviation, mean_deviation, cut}]; nominal {peak_base_moment, peak_base_force, rms_base_moment, rms_base_force};
@@ -177,6 +179,12 @@ fn say_missing(missing: &[Range<u64>]) {
     }
 }
 
+/// Returns that machines of a study are in no part, if some are.
+fn lacking(missing: &[Range<u64>], samples: u64) -> Option<String> {
+    let count: u64 = missing.iter().map(|gap| gap.end - gap.start).sum();
+    (count > 0).then(|| format!("{count} of {} in no part", counted(samples, "machine")))
+}
+
 /// Returns of which limits how many machines are past.
 fn past_limits(yields: &Yields) -> impl Iterator<Item = String> {
     let Yields { moment, force, .. } = yields;
@@ -224,10 +232,7 @@ impl ToleranceArguments {
         };
         say_written(whole);
         self.format.print(&answer, MergedParts::text)?;
-        let lacks = (!missing.is_empty()).then(|| {
-            let count: u64 = missing.iter().map(|gap| gap.end - gap.start).sum();
-            format!("{count} of {} in no part", counted(study.samples, "machine"))
-        });
+        let lacks = lacking(&missing, study.samples);
         self.strict.require(lacks.into_iter().chain(past_limits(&answer.yields)))
     }
 
@@ -318,8 +323,13 @@ impl ToleranceArguments {
         let ensemble = Ensemble::new(&plant, motion, self.instants as usize, &section.spreads, seed)?;
         let study = StudyId::of(&scenario, &section, [samples, seed], self.instants, self.simulate);
         let limits = Limits { moment: section.moment_limit, force: section.force_limit };
+        let mut missing = Vec::new();
         let (machines, results) = match &self.exact {
-            Some(file) => self.exact_results(&ensemble, &run, (&study, file), limits)?,
+            Some(file) => {
+                let (machines, results);
+                (machines, missing, results) = self.exact_results(&ensemble, &run, (&study, file), limits)?;
+                (machines, results)
+            }
             None if self.summary => {
                 let sum = self.summarize(&ensemble, &run, limits, &range)?;
                 self.output.iter().try_for_each(|file| write_summary(file, self.force, &study, &sum))?;
@@ -335,10 +345,13 @@ impl ToleranceArguments {
         let progress = Progress::hidden();
         let report =
             PartReport::of(&part, results, &|| progress.goes_on()).map_err(|e| Failure::refused(&scenario, e))?;
-        let answer = ToleranceAnswer { report, file: self.output.as_ref().map(|file| file.display().to_string()) };
+        let file = self.output.as_ref().map(|file| file.display().to_string());
+        let gaps = missing.iter().map(|gap| [gap.start, gap.end]).collect();
+        let answer = ToleranceAnswer { report, missing: gaps, file };
         self.output.iter().for_each(|file| say_written(file));
-        self.format.print(&answer, |answer| report::text(&answer.report))?;
-        self.strict.require(past_limits(&answer.report.yields))
+        self.format.print(&answer, ToleranceAnswer::text)?;
+        let lacks = lacking(&missing, samples);
+        self.strict.require(lacks.into_iter().chain(past_limits(&answer.report.yields)))
     }
 
     fn mode<'a>(&self, run: &'a Run) -> Mode<'a> {
@@ -375,14 +388,15 @@ impl ToleranceArguments {
         Ok(whole)
     }
 
-    /// Draws the machines of a summary again, and returns its results with exact quantiles.
+    /// Draws the machines of a summary again. Returns the range that they lie in, which of the study are missing, and the
+    /// results with exact quantiles.
     fn exact_results(
         &self,
         ensemble: &Ensemble,
         run: &Run,
         (study, file): (&StudyId, &Path),
         limits: Limits,
-    ) -> Result<(Range<u64>, Option<PartResults>), Failure> {
+    ) -> Result<(Range<u64>, Vec<Range<u64>>, Option<PartResults>), Failure> {
         let (own, sum) = read_summary(file)?;
         if own != *study {
             let why = "want the scenario and options that it was made with, --samples and --seed included";
@@ -434,23 +448,40 @@ impl ToleranceArguments {
             kept.get_or_insert(whole.kept);
             sum.learn(whole.values, &mut known).map_err(|_| foreign())?;
         }
-        for (number, extreme) in sum.extremes() {
-            let machine = extreme.machine..extreme.machine + 1;
-            let chunk = extreme.machine / CHUNK as u64;
-            let mut sampler = ensemble.sampler();
-            let once = (false, &(|| progress.goes_on()) as GoesOn<'_>);
-            let drawn = Batch::of(ensemble, &mut sampler, self.mode(run), chunk, &machine, once).map_err(failed)?;
-            let value = drawn.outcomes.first().map(|outcome| outcome.numbers()[number]);
-            if value != Some(extreme.value) {
-                return Err(foreign());
-            }
-        }
+        self.check_extremes(ensemble, run, &sum, &|| progress.goes_on())?.then_some(()).ok_or_else(foreign)?;
         progress.finish();
-        say_missing(&sum.missing(study.samples));
+        let missing = sum.missing(study.samples);
+        say_missing(&missing);
         let held = sum.machines();
         let machines = held.first().map_or(0, |own| own.start)..held.last().map_or(0, |own| own.end);
         let yields = kept.filter(|_| counts_anew).map_or_else(|| sum.yields(), |kept| limits.yields(kept, sum.count()));
-        Ok((machines, sum.results(&known).map(|results| PartResults { yields, ..results })))
+        Ok((machines, missing, sum.results(&known).map(|results| PartResults { yields, ..results })))
+    }
+
+    /// Returns whether the extremes of a summary are those of their machines, which are drawn again.
+    fn check_extremes(
+        &self,
+        ensemble: &Ensemble,
+        run: &Run,
+        sum: &Summary,
+        goes_on: GoesOn<'_>,
+    ) -> Result<bool, Failure> {
+        let mut by_machine = BTreeMap::<u64, Vec<(usize, f64)>>::new();
+        for (number, extreme) in sum.extremes() {
+            by_machine.entry(extreme.machine).or_default().push((number, extreme.value));
+        }
+        let mut sampler = ensemble.sampler();
+        for (machine, told) in by_machine {
+            let (chunk, alone) = (machine / CHUNK as u64, machine..machine + 1);
+            let drawn = Batch::of(ensemble, &mut sampler, self.mode(run), chunk, &alone, (false, goes_on));
+            let drawn = drawn.map_err(|e| Failure::refused(run.scenario(), e))?;
+            let is_so =
+                |(number, value): &(usize, f64)| drawn.outcomes.iter().any(|of| of.numbers()[*number] == *value);
+            if !told.iter().all(is_so) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Evaluates the machines of a range and writes them if requested. Returns their outcomes and, if these are

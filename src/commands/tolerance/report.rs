@@ -80,6 +80,9 @@ pub struct ToleranceAnswer {
     /// Report on its machines.
     #[serde(flatten)]
     pub report: PartReport,
+    /// Machines that are in no part of a summary: the first of each gap, and the last plus one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<[u64; 2]>,
     /// The file that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
@@ -91,14 +94,24 @@ const MIN_SAMPLES: u64 = 100;
 /// Maximum number of rows of the table of shares; the other parameters share one more row.
 const MAX_SHARE_ROWS: usize = 12;
 
-/// Formats the report as text.
-pub fn text(report: &PartReport) -> String {
-    let [from, to] = report.shard;
+impl ToleranceAnswer {
+    /// Formats the report as text.
+    pub fn text(&self) -> String {
+        let report = &self.report;
+        let [from, to] = report.shard;
+        let missing: u64 = self.missing.iter().map(|[from, to]| to - from).sum();
+        let which = match to - from == report.samples {
+            _ if missing > 0 => format!("{} of {}", report.samples - missing, counted(report.samples, "machine")),
+            true => counted(report.samples, "machine"),
+            false => format!("machines {from} to {} of {}", to - 1, report.samples),
+        };
+        text(report, &which)
+    }
+}
+
+/// Formats the report on some machines, which are named, as text.
+fn text(report: &PartReport, which: &str) -> String {
     let mode = if report.simulated { "each simulated" } else { "perfect tracking" };
-    let which = match to - from == report.samples {
-        true => counted(report.samples, "machine"),
-        false => format!("machines {from} to {} of {}", to - 1, report.samples),
-    };
     let (seed, instants, time) = (report.seed, report.bands.time.len(), fixed(report.duration, 3));
     let mut text = format!(
         "{} · {which}, {mode}, seed {seed}, varied in {}, {instants} instants in {time} s\n\n{}",

@@ -21,10 +21,11 @@ fn weight(place: u64) -> u64 {
     1 + (x ^ (x >> 31)) % (PRIME - 1)
 }
 
-/// Places of what is counted: of a number of an outcome its bins, then count and sums of each octave; limits are after all.
+/// Places of what is counted: of a number of an outcome its bins, then count and sums of each octave; limits and machines are after all.
 const PLACES: u64 = 1 << 32;
 const COUNT: u64 = 1 << 31;
 const LIMIT: u64 = 1 << 40;
+const MACHINES: u64 = 1 << 41;
 
 impl ControlSum {
     /// Returns the sum of a column, which may have been added up over parts.
@@ -46,10 +47,18 @@ impl ControlSum {
         sum
     }
 
-    /// Returns the sum of the machines within one of the limits.
-    pub fn of_limit(limit: usize, count: u64) -> Self {
+    /// Returns the sum of the machines within one of the limits, whose value it is.
+    pub fn of_limit(limit: usize, value: f64, count: u64) -> Self {
         let mut sum = Self::default();
         sum.count(LIMIT + limit as u64, u128::from(count));
+        sum.count(value.to_bits() ^ LIMIT, u128::from(count));
+        sum
+    }
+
+    /// Returns the sum of consecutive machines, by the number of the first.
+    pub fn of_machines(first: u64, count: u64) -> Self {
+        let mut sum = Self::default();
+        sum.count(MACHINES + first, u128::from(count));
         sum
     }
 

@@ -11,7 +11,7 @@
 //! | `sum_0` to `sum_2` | of sums Σ r, r the 52 bits of the mantissa, as digits to the base 2³¹, the lowest first; else 0 |
 //! | `low_0`, `low_1` | of sums Σ l, l the lowest 10 bits of r |
 //! | `square_0` to `square_3` | of sums Σ u², u the upper 42 bits of r |
-//! | `control` | of sums and limits a weighted sum of all that is counted, modulo a prime ([`ControlSum`]); else 0 |
+//! | `control` | of all but bins a weighted sum of all that is counted, modulo a prime ([`ControlSum`]); of bins 0 |
 //!
 //! Rows of the same study, outcome and bin add up: `count`, `control` and all digits by SUM, `least` by MIN, `greatest` by
 //! MAX, with their machines. Digits may then exceed 2³¹; up to four million parts they are whole even as floating point
@@ -87,13 +87,14 @@ fn rows<E>(summary: &Summary, mut see: impl FnMut(Row<'_>) -> Result<(), E>) -> 
     for held in summary.machines() {
         let [least, greatest] = [held.start, held.end.saturating_sub(1)].map(machine);
         let octave = Octave { least, greatest, ..counted(held.end - held.start) };
-        see(Row { outcome: MACHINES, at: held.start, octave, control: 0 })?;
+        let control = ControlSum::of_machines(held.start, octave.count).total();
+        see(Row { outcome: MACHINES, at: held.start, octave, control })?;
     }
     let limits = limits(summary.limits());
     for (i, count) in summary.kept().into_iter().enumerate() {
         let Some(limit) = limits[i].map(|value| Extreme { value, machine: 0 }) else { continue };
         let octave = Octave { least: limit, greatest: limit, ..counted(count) };
-        see(Row { outcome: LIMITS[i], at: 0, octave, control: ControlSum::of_limit(i, count).total() })?;
+        see(Row { outcome: LIMITS[i], at: 0, octave, control: ControlSum::of_limit(i, limit.value, count).total() })?;
     }
     for (number, outcome) in SampleOutcome::NAMES.into_iter().enumerate() {
         let sums = format!("{outcome}{SUMS}");
@@ -213,7 +214,9 @@ fn numbers<'a, const N: usize>(table: &'a ColumnTable, names: [&str; N]) -> Resu
 
 fn column<'a>(table: &'a ColumnTable, name: &str) -> Result<&'a ColumnValues, String> {
     let at = table.heads.iter().position(|head| head == name);
-    let at = at.ok_or_else(|| format!("no column {name}: want the columns of `stillbase tolerance --summary`"))?;
+    let at = at.ok_or_else(|| {
+        format!("no column {name}: want all columns of `stillbase tolerance --summary`, written by this version")
+    })?;
     Ok(&table.columns[at])
 }
 
@@ -293,6 +296,9 @@ impl Found {
                 let why = "they are counted twice, or not all: want every part once";
                 return Err(format!("{count} machines from {from} to {}: {why}", to - 1));
             }
+            if row.control()? != ControlSum::of_machines(from, count) {
+                return Err(changed("they"));
+            }
             self.machines.push(from..to);
         } else if let Some(i) = LIMITS.iter().position(|name| *name == outcome) {
             let limit = least.value;
@@ -364,7 +370,6 @@ impl Found {
             ));
         }
         // A table of another program has no checksum of its bytes.
-        let changed = |what: &str| format!("{what} and its column control differ: want the rows as they were written");
         for (number, name) in SampleOutcome::NAMES.iter().enumerate() {
             for (at, octave, bins) in summary.octaves_with_bins(number) {
                 let told = self.octaves.get(&(number, at)).map(|(_, control)| *control);
@@ -374,7 +379,8 @@ impl Found {
             }
         }
         for (i, name) in LIMITS.iter().enumerate() {
-            if self.kept_controls[i] != ControlSum::of_limit(i, self.kept[i]) {
+            let limit = self.limits[i].unwrap_or_default();
+            if self.kept_controls[i] != ControlSum::of_limit(i, limit, self.kept[i]) {
                 return Err(changed(name));
             }
         }
@@ -395,6 +401,11 @@ impl Found {
             false => Err(format!("{} counts {}: want every row of every part once", LIMITS[2], kept[2])),
         }
     }
+}
+
+/// Says that counts do not fit the control sum.
+fn changed(what: &str) -> String {
+    format!("{what} and the column control differ: want the rows as they were written")
 }
 
 fn counted_twice(machines: &Range<u64>) -> String {

@@ -28,10 +28,15 @@ pub struct PlacedCounterweights {
 }
 
 impl PlacedCounterweights {
+    /// Returns the gap as a share of the value, or of the unit of the objective if that is larger.
+    pub fn relative_gap(&self) -> f64 {
+        self.gap / self.value.abs().max(self.unit)
+    }
+
     /// Returns whether the value is certified as the optimum, to rounding. A search may stop before it has proved
     /// optimality.
     pub fn is_certified(&self) -> bool {
-        self.gap <= 2.0 * MAX_GAP * self.value.abs().max(self.unit)
+        self.relative_gap() <= 2.0 * MAX_GAP
     }
 }
 

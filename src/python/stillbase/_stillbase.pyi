@@ -513,10 +513,10 @@ def ask(*words: typing.Any, **given: typing.Any) -> typing.Any:
     ```
     """
 
-def main(words: typing.Sequence[str]) -> int:
+def main(words: typing.Sequence[str], ends_process: bool = False) -> int:
     """
     Carries out a command line as the program does, and returns its exit status. The first word is the name of the
-    program.
+    program. With `ends_process` signals end the process at once and leave no half-written file, as they do for the program.
 
     ```python
     >>> from stillbase._stillbase import main

@@ -111,7 +111,7 @@ struct Frame {
     origin: [f64; 2],
     /// Width and height, px.
     size: [f64; 2],
-    /// Direction of the ground from the base, in pixels: where the machine is not.
+    /// Direction of the ground from the base, in pixels.
     down: [f64; 2],
 }
 
@@ -120,18 +120,10 @@ impl Frame {
         let [low, high] = portrait.bounds;
         let extent = high - low;
         let scale = (SIZE_PX[0] / extent.re).min(SIZE_PX[1] / extent.im);
-        let middles = portrait.links.iter().map(|link| 0.5 * (link.ends[0] + link.ends[1]));
-        let middle = middles.sum::<Vector>();
-        // The ground lies below, unless the machine does.
-        let sides = [
-            ([0.0, 1.0], middle.im + 1e-9),
-            ([-1.0, 0.0], middle.re),
-            ([1.0, 0.0], -middle.re),
-            ([0.0, -1.0], -middle.im),
-        ];
-        let below = sides[0];
-        let down =
-            if below.1 >= 0.0 { below } else { sides.into_iter().fold(below, |a, b| if b.1 > a.1 { b } else { a }) }.0;
+        // The ground lies below, unless less of the machine is on another side.
+        let sides = [[0.0, 1.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0]];
+        let hidden = |side: &[f64; 2]| covered(portrait, scale, *side);
+        let down = sides.into_iter().min_by(|a, b| hidden(a).total_cmp(&hidden(b))).unwrap_or(sides[0]);
         // What the ground takes beyond the machine, px.
         let [half, high_px, hatch] = GROUND_PX;
         let corner = |across: f64, along: f64| {
@@ -160,6 +152,26 @@ impl Frame {
     fn length(&self, metres: f64) -> f64 {
         self.scale * metres
     }
+}
+
+/// Returns how much of the machine lies where the ground would, in a direction from the base: the number of points along
+/// its bars and counterweights, px. The picture has a scale in px/m.
+fn covered(portrait: &Portrait, scale: f64, [x, y]: [f64; 2]) -> f64 {
+    const POINTS: usize = 9;
+    let [half, height, hatch] = GROUND_PX;
+    let is_covered = |at: Vector, radius: f64| {
+        let (right, up) = (scale * at.re, scale * at.im);
+        let (along, across) = (right * x - up * y, right * y + up * x);
+        let radius = scale * radius;
+        along + radius > 0.5 * height && along - radius < height + hatch && across.abs() < half + radius
+    };
+    let bars = portrait.links.iter().map(|link| (link.ends, link.radius));
+    let weights = portrait.links.iter().flat_map(|link| link.covers.iter().map(|cover| (cover.ends, cover.radius)));
+    let points = bars.chain(weights).flat_map(|([from, to], radius)| {
+        let share = |i: usize| i as f64 / (POINTS - 1) as f64;
+        (0..POINTS).map(move |i| (from + (to - from) * share(i), radius))
+    });
+    points.filter(|(at, radius)| is_covered(*at, *radius)).count() as f64
 }
 
 /// Draws a link with what it carries: all edges first, so that none crosses the body.

@@ -1,0 +1,121 @@
+//! Assemblies on the command line: `check`, `dynamics` and `simulate`, and files that are wrong.
+
+use super::*;
+
+#[test]
+fn check_says_which_block_reacts_and_what_would_be_right() {
+    let silent = object(&["check", "carrier-and-wrist", "--strict"]);
+    assert_eq!(silent["silent"], true);
+    let names: Vec<&str> =
+        silent["blocks"].as_array().expect("a list").iter().filter_map(|of| of["block"].as_str()).collect();
+    assert_eq!(names, ["carrier", "wrist"]);
+    near(&silent["blocks"][0]["carried_mass"], &silent["blocks"][1]["mass"], 1e-12, "carried mass");
+    let wrong = object(&["check", "wrist-off-its-pin"]);
+    assert_eq!((&wrong["silent"], &wrong["blocks"][1]["silent"]), (&json!(false), &json!(true)));
+    let out = stillbase(&["check", "wrist-off-its-pin", "--strict"]);
+    assert!(out.status.code() == Some(1) && text(&out.stderr).contains("want block wrist at = [0, 0, 0.02]"));
+    // What it wants is right, typed in: on the pin it only tilts, in the plane of the carrier it is silent.
+    let whole = prints(&["machines", "wrist-off-its-pin"]);
+    let folder = Folder::new("assemblies");
+    let mended = |at: &str| {
+        let file = folder.file("mended.toml", &whole.replace("at = [0.03, 0, 0.02]", &format!("at = {at}")));
+        object(&["check", &word(file)])
+    };
+    let [on_pin, level] = ["[0, 0, 0.02]", "[0, 0, 0]"].map(mended);
+    let reasons = on_pin["blocks"][0]["reasons"].as_array().expect("a list");
+    assert!(reasons.len() == 1 && reasons[0].as_str().is_some_and(|why| why.contains("tilts the base")));
+    assert_eq!(level["silent"], true);
+    // Arms with parallel planes may change their b together.
+    assert_eq!(object(&["check", "two-arms"])["parallel"], json!([["left", "right"]]));
+    // A carrier that holds more than it was balanced for says for what it wants to be balanced.
+    let heavy = object(&["check", "carrier-and-wrist", "--set", "wrist.payload.mass=0.1"]);
+    let reasons = heavy["blocks"][0]["reasons"].as_array().expect("a list");
+    assert!(reasons[0].as_str().is_some_and(|why| why.contains("payload.mass = 0.52")), "{reasons:?}");
+}
+
+#[test]
+fn states_of_blocks_have_a_wrench_in_space() {
+    let folder = Folder::new("assemblies");
+    let states = word(folder.file(
+        "states.json",
+        r#"[{"carrier": [[0.4, 1.1, 2.0], [0.3, -0.2, 0.5], [1, 2, -3]], "wrist": [[0.2, 1.5], [1, -1], [2, 1]]}]"#,
+    ));
+    let found = object(&["dynamics", "carrier-and-wrist", "--states", &states, "--set", "gravity=0,0,-9.81"]);
+    let result = &found["results"][0];
+    // Both hang from their pins, so weight is that of the mass at the base.
+    near(
+        &result["force"][2],
+        &json!(-9.81 * object(&["check", "carrier-and-wrist"])["mass"].as_f64().expect("kg")),
+        1e-9,
+        "weight",
+    );
+    let sum: f64 = (0..2).map(|i| result["blocks"][i]["moment"][2].as_f64().expect("a number")).sum();
+    assert!((sum - result["moment"][2].as_f64().expect("a number")).abs() < 1e-12);
+    // A machine by itself answers in the same keys.
+    let alone =
+        word(folder.file("alone.json", r#"[{"q": [0.4, 1.1, 2.0], "qd": [0.3, -0.2, 0.5], "qdd": [1, 2, -3]}]"#));
+    let alone = object(&["dynamics", "nine-link-table-1", "--states", &alone]);
+    let result = &alone["results"][0];
+    assert_eq!((&result["force"][0], &result["moment"][2]), (&result["base_force"][0], &result["base_moment"]));
+    for (text, words) in [
+        (r#"[{"carrier": [[1, 2, 3], [0, 0, 0], [0, 0, 0]]}]"#, "state 1: block wrist: missing"),
+        (r#"[{"elbow": [[1], [0], [0]]}]"#, "no block \"elbow\": want one of carrier, wrist"),
+        (
+            r#"[{"carrier": [[1, 2], [0, 0], [0, 0]], "wrist": [[1, 2], [0, 0], [0, 0]]}]"#,
+            "block carrier: q has 2 numbers: want 3",
+        ),
+        (r#"[{"carrier": [[1, 2, 3], [0, 0, 0]]}]"#, "want [{\"carrier\": [[rad], [rad/s], [rad/s²]]"),
+    ] {
+        let file = word(folder.file("wrong.json", text));
+        fails(&["dynamics", "carrier-and-wrist", "--states", &file], 2, &[words]);
+    }
+    for (setting, words) in [
+        ("payload.mass=1", "one of carrier, wrist, as carrier.payload.mass"),
+        ("wrist.gravity=0,1", "want gravity=x,y,z of the whole assembly"),
+        ("gravity=0,1", "want x,y,z of the assembly"),
+        ("gravity=0,0,inf", "want three numbers"),
+        ("wrist.payload.mass=-1", "block wrist"),
+    ] {
+        fails(&["check", "carrier-and-wrist", "--set", setting], 2, &[words]);
+    }
+}
+
+#[test]
+fn blocks_follow_tasks_of_their_own() {
+    let silent = object(&["simulate", "four-freedoms", "--signals", "torque,pose", "--every", "1000", "--strict"]);
+    assert_eq!(silent["verdict"]["silent_force"], json!([true, true, true]));
+    assert_eq!(silent["time"], json!([0.0, 1.0, 2.0]));
+    assert_eq!(silent["units"]["torque/wrist.1"], "N m");
+    let b = silent["signals"]["pose/carrier.b"].as_array().expect("a list");
+    b.iter().for_each(|b| near(b, &json!(3.279), 1e-9, "b is held"));
+    let loud = object(&["simulate", "off-its-pin", "--signals", "moment"]);
+    assert_eq!(loud["verdict"]["silent_moment"], json!([false, false, false]));
+    let out = stillbase(&["simulate", "off-its-pin", "--signals", "moment", "--strict"]);
+    assert!(out.status.code() == Some(1) && text(&out.stderr).contains("--strict: off-its-pin: reacts: n_x up to"));
+    // The other arm's b is what keeps the base at rest.
+    let [both, one] = [&[][..], &["--set", "task.right.b_to=1.9"]].map(|more| {
+        object(&[&["simulate", "arm-against-arm", "--signals", "attitude"], more].concat())["verdict"]["base_angle"]
+            .clone()
+    });
+    assert!(both.as_f64().is_some_and(|turn| turn < 1e-9) && one.as_f64().is_some_and(|turn| turn > 0.02), "{one}");
+    // A refusal names its block, and its ways out work as they are printed.
+    let refused = ["simulate", "four-freedoms", "--signals", "moment", "--set", "task.carrier.b=2"];
+    fails(&refused, 1, &["block carrier: ", "--set task.carrier.b="]);
+    let out = stillbase(&refused);
+    let typed = text(&out.stderr).lines().find(|line| line.contains("take b =")).expect("a way out");
+    let (_, setting) = typed.rsplit_once("--set ").expect("a setting");
+    assert_eq!(
+        object(&["simulate", "four-freedoms", "--signals", "moment", "--set", setting])["verdict"]["silent_moment"][2],
+        true
+    );
+    for (args, words) in [
+        (&["design", "carrier-and-wrist"][..], "want one machine"),
+        (&["headless", "four-freedoms", "-o", "x.rrd"], "simulate takes this one"),
+        (&["simulate", "four-freedoms", "--signals", "nothing"], "no signal \"nothing\""),
+        (&["simulate", "four-freedoms", "--set", "task.elbow.b=1"], "no block \"elbow\""),
+        (&["simulate", "four-freedoms", "--set", "step=0"], "want 0.000001 to 0.1 s"),
+        (&["machines", "two-arms", "-o", "x.toml"], "is an assembly"),
+    ] {
+        fails(args, 2, &[words]);
+    }
+}
