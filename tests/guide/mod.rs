@@ -7,7 +7,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use markdown::{addresses, blocks, definitions, labels, prose};
+use stillbase::mechanics::assembly::{self, Assembly};
 use stillbase::mechanics::machine;
+use stillbase::session::assembly::AssemblyScenario;
 use stillbase::session::scenario::Scenario;
 
 /// Fences that may stand in a page. `sh` and `console` are run, what they print is compared where it is shown; `sh
@@ -159,6 +161,8 @@ fn pictures_are_shown_in_both_themes() {
 fn toml_blocks_are_read() {
     let mut count = 0;
     for (page, text) in all() {
+        // Those that a page has shown so far.
+        let mut assemblies: Vec<(String, Assembly)> = Vec::new();
         for block in blocks(&text) {
             let place = format!("{page}:{}", block.line);
             let kind = block.kind.split(' ').next().expect("a word");
@@ -173,6 +177,18 @@ fn toml_blocks_are_read() {
             count += 1;
             if block.text.contains("[[drive]]") {
                 machine::parse(&block.text, &place).unwrap_or_else(|error| panic!("{error}"));
+                continue;
+            }
+            if block.text.contains("kind = \"assembly\"") {
+                let read = assembly::parse(&block.text, &place, &machine::named);
+                let (_, name) = block.kind.split_once(' ').expect("the name of a file");
+                assemblies.push((name.to_owned(), read.unwrap_or_else(|error| panic!("{error}"))));
+                continue;
+            }
+            let of = |(name, _): &&(String, Assembly)| block.text.contains(&format!("machine = {name:?}"));
+            if let Some((_, assembly)) = assemblies.iter().find(of) {
+                let read = AssemblyScenario::parse(&block.text, &place, assembly.clone());
+                read.unwrap_or_else(|error| panic!("{error}"));
                 continue;
             }
             let mut whole = block.text.clone();
