@@ -235,6 +235,7 @@ fn what_is_derived_is_kept_by_queries_alone() {
         ("app/gallery.rs", "pictures of the machines that come along"),
         ("files/text.rs", "what was read from standard input, which can be read once"),
         ("mechanics/machine/catalog.rs", "the machines that come along"),
+        ("mechanics/assembly/catalog.rs", "the assemblies that come along"),
         ("session/scenario/catalog.rs", "the scenarios that come along"),
         ("picture/scene/stage/workspace.rs", "bounds that follow from the planes it holds"),
         ("planning/pose_space/pattern.rs", "patterns that follow from the space they are of"),
@@ -271,6 +272,7 @@ fn the_library_does_not_panic() {
     let allowed = [
         // Files that are compiled in; a test reads each.
         ("mechanics/machine/catalog.rs", "the machines that come along are valid"),
+        ("mechanics/assembly/catalog.rs", "the assemblies that come along are valid"),
         ("session/scenario/catalog.rs", "the scenarios that come along are valid"),
         // Plain data is always TOML.
         ("mechanics/machine/file.rs", "a machine is plain data"),
