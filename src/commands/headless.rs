@@ -8,6 +8,7 @@ use serde::Serialize;
 use stillbase_recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
 #[cfg(feature = "stream")]
 use stillbase_recording::{VIEWER_URL, Viewer, stream};
+use stillbase_session::assembly::AssemblyScenario;
 use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::Statements;
 use stillbase_settings::text::plain;
@@ -15,8 +16,9 @@ use stillbase_settings::text::plain;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
+use super::headless_assembly;
 use super::in_process::is_in_process;
-use super::input::{Settings, no_use, scenario};
+use super::input::{Settings, assembly_scenario, no_use, scenario};
 use super::output::{Format, TextTable, say_written};
 use super::progress::Progress;
 use super::simulate::require_audit;
@@ -164,6 +166,9 @@ impl From<Recording> for Row {
 impl HeadlessArguments {
     /// Records the scenarios and prints the peaks of each.
     pub fn run(&self) -> Result<(), Failure> {
+        if let Some(of_assembly) = self.assembly()? {
+            return self.record_assembly(&of_assembly);
+        }
         let scenarios = self.scenarios()?;
         let to = self.target()?;
         let [width, height] = self.size;
@@ -211,6 +216,30 @@ impl HeadlessArguments {
     #[cfg(not(feature = "stream"))]
     fn viewer(&self) -> Result<Target, Failure> {
         Err(Failure::wrong_input("no file: want -o FILE.rrd"))
+    }
+
+    /// Returns the scenario of an assembly, if one is named.
+    fn assembly(&self) -> Result<Option<AssemblyScenario>, Failure> {
+        for name in &self.scenarios {
+            if let Some(found) = assembly_scenario(name, &self.settings)? {
+                return match &self.scenarios[..] {
+                    [_] => Ok(Some(found)),
+                    _ => Err(Failure::wrong_input(format!("{name} is of an assembly: want it recorded by itself"))),
+                };
+            }
+        }
+        Ok(None)
+    }
+
+    fn record_assembly(&self, scenario: &AssemblyScenario) -> Result<(), Failure> {
+        if self.fps.is_some() || self.every_step {
+            return Err(Failure::wrong_input("--fps, --every-step: want neither for an assembly"));
+        }
+        match self.target()? {
+            Target::File(file) => headless_assembly::record(scenario, (&file, self.force), &self.format, &self.strict),
+            #[cfg(feature = "stream")]
+            Target::Viewer(_) => Err(Failure::wrong_input("an assembly is not streamed: want -o FILE.rrd")),
+        }
     }
 
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {

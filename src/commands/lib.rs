@@ -24,6 +24,8 @@ mod figures;
 mod file_form;
 #[cfg(feature = "record")]
 mod headless;
+#[cfg(feature = "record")]
+mod headless_assembly;
 mod holds;
 mod import;
 mod import_model;
@@ -125,7 +127,7 @@ macro_rules! subcommands {
 // In the order of the help.
 subcommands! {
     #[cfg(feature = "record")]
-    Headless: headless::HeadlessArguments => [headless::Answer],
+    Headless: headless::HeadlessArguments => [headless::Answer, headless_assembly::AssemblyRecorded],
     Simulate: simulate::SimulateArguments => [simulate::Answer, simulate_assembly::AssemblyAnswer],
     #[cfg(feature = "record")]
     Replay: replay::ReplayArguments => [replay::Answer],

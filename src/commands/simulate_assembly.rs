@@ -17,7 +17,7 @@ use super::simulate::{Columns, SimulateArguments};
 
 /// Results of a run of an assembly.
 #[derive(JsonSchema, Serialize)]
-struct AssemblyOutcome {
+pub struct AssemblyOutcome {
     steps: u64,
     /// Peaks of the force on a fixed base from motion, x, y, z, N.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,7 +53,13 @@ pub struct AssemblyAnswer {
 const COMPONENTS: [&str; 6] = ["f_x", "f_y", "f_z", "n_x", "n_y", "n_z"];
 
 impl AssemblyOutcome {
-    fn of(scenario: &AssemblyScenario, verdict: &AssemblyVerdict) -> Self {
+    /// Returns the result in a sentence.
+    pub fn sentence(&self) -> &str {
+        &self.sentence
+    }
+
+    /// Returns the results of a run.
+    pub fn of(scenario: &AssemblyScenario, verdict: &AssemblyVerdict) -> Self {
         let three = |from: usize| std::array::from_fn(|i| verdict.peaks[from + i]);
         let (is_fixed, silent) = (scenario.base == AssemblyBase::Fixed, verdict.silent());
         let each = |from: usize| std::array::from_fn(|i| silent[from + i]);
@@ -91,7 +97,7 @@ impl AssemblyOutcome {
 }
 
 /// Returns why the task of a block cannot be planned, with what would do: keys get the name of the block.
-fn refused(scenario: &AssemblyScenario, block: usize, why: stillbase_session::Refusal) -> Failure {
+pub fn refused(scenario: &AssemblyScenario, block: usize, why: stillbase_session::Refusal) -> Failure {
     let name = &scenario.assembly.blocks()[block].name;
     match &scenario.tasks[block] {
         BlockTask::Moves(task) => Failure::refused(task, why).of_block(name),
@@ -168,7 +174,7 @@ impl SimulateArguments {
 }
 
 /// Returns what fails with `--strict`.
-fn reactions(scenario: &AssemblyScenario, outcome: &AssemblyOutcome) -> Vec<String> {
+pub fn reactions(scenario: &AssemblyScenario, outcome: &AssemblyOutcome) -> Vec<String> {
     let silent = outcome.silent_force.into_iter().chain(outcome.silent_moment).flatten().all(|is_so| is_so);
     let kept = outcome.base_angle.is_none_or(|angle| angle <= 1e-6);
     if silent && kept { Vec::new() } else { vec![format!("{}: {}", scenario.name, outcome.sentence)] }

@@ -54,22 +54,65 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
     }
     layout.tab.clear();
     let root = layout.tabs("", &tabs, active)?;
-    let viewport = view::ViewportBlueprint::new()
-        .with_root_container(RootContainer(root.id.into()))
-        .with_auto_layout(false)
-        .with_auto_views(false);
-    layout.store.layout(&"viewport".into(), &viewport)?;
-    for panel in ["selection_panel", "blueprint_panel"] {
-        layout.store.layout(&panel.into(), &view::PanelBlueprint::new().with_state(PanelState::Collapsed))?;
+    layout.open_with(&root)
+}
+
+/// What the layout of an assembly shows.
+pub struct AssemblyLayout {
+    /// Title of the scenario.
+    pub title: String,
+    /// Path of its entities.
+    pub root: EntityPath,
+    /// Eye of its scene.
+    pub eye: Eye,
+    /// Its plots.
+    pub plots: Vec<AssemblyPlot>,
+}
+
+/// A plot of all series of an entity.
+pub struct AssemblyPlot {
+    /// Title, with units.
+    pub title: String,
+    /// The entity.
+    pub path: EntityPath,
+    /// Least and greatest value.
+    pub range: [f64; 2],
+}
+
+/// Number of plots on a page.
+const PLOTS_PER_PAGE: usize = 4;
+
+/// Writes the layout of an assembly and makes the viewer open with it: scene and notes on the left, plots on the right.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn lay_out_assembly(store: &mut Store, of: &AssemblyLayout) -> Result<(), StoreError> {
+    let palette = palette(Theme::Dark);
+    let mut layout = Layout { store, palette, tab: String::new(), charts: Vec::new(), pictured: false };
+    let contents = ["$origin/**", "- $origin/signals/**", "- $origin/notes/**"].map(String::from);
+    let scene = layout.space("Scene", &of.root, &contents, &of.eye)?;
+    let notes = layout.document("Notes", &under(&of.root, "notes"))?;
+    let left = layout.container(ContainerKind::Vertical, "", &[scene, notes], &[2.6, 1.0])?;
+    let mut pages = Vec::new();
+    for (i, plots) in of.plots.chunks(PLOTS_PER_PAGE).enumerate() {
+        let mut parts = Vec::new();
+        for AssemblyPlot { title, path, range } in plots {
+            let range = with_ticks(room_for(*range), plots.len());
+            parts.push(layout.time_series(title, path, &["$origin".into()], Some(range), false)?);
+        }
+        let name = if i == 0 { "Base and drives".to_owned() } else { format!("More {}", i + 1) };
+        pages.push(layout.container(ContainerKind::Vertical, &name, &parts, &vec![1.0; parts.len()])?);
     }
-    let time = view::TimePanelBlueprint::new()
-        .with_state(PanelState::Collapsed)
-        .with_timeline(TIME_TIMELINE)
-        .with_loop_mode(LoopMode::All)
-        // A layout cannot set the displayed instant; playback is on so that more than the start is shown.
-        .with_play_state(PlayState::Playing);
-    layout.store.layout(&"time_panel".into(), &time)?;
-    layout.store.activate_layout()
+    let plots = layout.container(ContainerKind::Tabs, "", &pages, &[])?;
+    let root = layout.container(ContainerKind::Horizontal, &of.title, &[left, plots], &[1.25, 1.0])?;
+    layout.open_with(&root)
+}
+
+/// Widens a range so that a constant can be seen.
+fn room_for([low, high]: [f64; 2]) -> [f64; 2] {
+    // Below this all is rounding.
+    let room = (0.05 * (high - low)).max(1e-6 * low.abs().max(high.abs())).max(1e-6);
+    [low - room, high + room]
 }
 
 /// Returns the charts of all cases with common ranges, so that cases can be compared.
@@ -112,6 +155,26 @@ const MAX_TITLE_CONDITIONS: usize = 6;
 const MAX_LEGEND_CASES: usize = 5;
 
 impl Layout<'_> {
+    /// Makes the viewer open with a container that holds all, panels closed and time running.
+    fn open_with(&mut self, root: &Part) -> Result<(), StoreError> {
+        let viewport = view::ViewportBlueprint::new()
+            .with_root_container(RootContainer(root.id.into()))
+            .with_auto_layout(false)
+            .with_auto_views(false);
+        self.store.layout(&"viewport".into(), &viewport)?;
+        for panel in ["selection_panel", "blueprint_panel"] {
+            self.store.layout(&panel.into(), &view::PanelBlueprint::new().with_state(PanelState::Collapsed))?;
+        }
+        let time = view::TimePanelBlueprint::new()
+            .with_state(PanelState::Collapsed)
+            .with_timeline(TIME_TIMELINE)
+            .with_loop_mode(LoopMode::All)
+            // A layout cannot set the displayed instant; playback is on so that more than the start is shown.
+            .with_play_state(PlayState::Playing);
+        self.store.layout(&"time_panel".into(), &time)?;
+        self.store.activate_layout()
+    }
+
     /// Returns the identifier of a view or container, a hash of its class, its tab and `words`. A viewer
     /// stores the state of a view by its identifier, even across recordings, and shows nothing if the stored class
     /// differs.

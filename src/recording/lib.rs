@@ -25,6 +25,9 @@
 //! | `notes` | verdict, notes and bookmarks, and the equations with their numbers, as Markdown |
 //! | `view` | offscreen pictures |
 //!
+//! Of an assembly each block is an entity with a place in space, and its own scene below it; `trail/<block>` is the path of its
+//! end effector, and `signals/<group>/<block>` are signals of its drives.
+//!
 //! Each item of the [`Scene`](stillbase_picture::scene::Scene) that the window opens with is an entity with the name of
 //! the item. The plots are the [`charts`](stillbase_picture::charts) of the window. So a new item of the scene, or a
 //! new signal in a chart, is recorded without a change here. Options that are off by default in the window are not
@@ -40,6 +43,7 @@
 //! version and verdict are properties of the recording. Equal scenarios give equal recordings, independent of the time
 //! and the computer.
 
+mod assembly;
 mod blueprint;
 mod dashes;
 mod design;
@@ -64,6 +68,7 @@ mod topic;
 #[cfg(feature = "stream")]
 mod viewer;
 
+pub use assembly::{AssemblyRecordError, record_assembly};
 pub use options::{Options, Pictures};
 #[cfg(feature = "stream")]
 pub use viewer::{VIEWER_URL, Viewer, ViewerError};

@@ -66,6 +66,28 @@ impl AssemblyReport {
     }
 }
 
+impl AssemblyReport {
+    /// Returns the report as Markdown, under a title and what a run of the assembly showed.
+    pub fn markdown(&self, title: &str, run: &str) -> String {
+        let mut text = format!(
+            "# {title}\n\n{run}\n\n| block | machine | on | kg | carries kg | silent |\n|---|---|---|---|---|---|\n"
+        );
+        for of in &self.blocks {
+            let silent = if of.silent { "yes" } else { "no" };
+            text += &format!(
+                "| {} | {} | {} | {:.3} | {:.3} | {silent} |\n",
+                of.block, of.machine, of.on, of.mass, of.carried_mass
+            );
+        }
+        for of in &self.blocks {
+            for why in &of.reasons {
+                text += &format!("\nBlock {}: {why}\n", of.block);
+            }
+        }
+        text
+    }
+}
+
 /// Returns the names of blocks whose axes are parallel, in groups of at least two.
 fn parallel(blocks: &[Block]) -> Vec<Vec<String>> {
     let axis = |block: &Block| block.mount.axes.column(2).into_owned();

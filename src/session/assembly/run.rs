@@ -121,6 +121,11 @@ impl AssemblyRun {
         &self.scenario
     }
 
+    /// Returns the duration, s.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
     /// Returns the number of steps; `None` if there are too many.
     pub fn steps(&self) -> Option<u64> {
         self.scenario.fits(self.duration).then(|| (self.duration / self.scenario.step - 1e-9).ceil().max(0.0) as u64)
