@@ -18,7 +18,7 @@ fn check_says_which_block_reacts_and_what_would_be_right() {
     let whole = prints(&["machines", "wrist-off-its-pin"]);
     let folder = Folder::new("assemblies");
     let mended = |at: &str| {
-        let file = folder.file("mended.toml", &whole.replace("at = [0.03, 0, 0.02]", &format!("at = {at}")));
+        let file = folder.file("mended.toml", whole.replace("at = [0.03, 0, 0.02]", &format!("at = {at}")));
         object(&["check", &word(file)])
     };
     let [on_pin, level] = ["[0, 0, 0.02]", "[0, 0, 0]"].map(mended);

@@ -99,9 +99,9 @@ impl OutOfPlane {
         }
         // Of a bar along e the projector to the direction across is ½ (1 − Re e²) and its like.
         let (mut bars, mut leaning) = (0.0, Vector::default());
-        for k in 0..self.drives {
-            bars += self.bars[k];
-            leaning += self.bars[k] * (e[k] * e[k]);
+        for (e, bar) in e.iter().zip(&self.bars).take(self.drives) {
+            bars += bar;
+            leaning += *bar * (e * e);
         }
         let [xx, yy] = [0.5 * (polar + square.re), 0.5 * (polar - square.re)];
         let xy = 0.5 * square.im;

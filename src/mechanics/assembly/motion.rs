@@ -88,11 +88,11 @@ type Moving = [Vector; 3];
 #[inline]
 fn moving_sum(c: impl Fn(usize) -> Vector, e: &UnitVectors, state: &BlockState) -> Moving {
     let mut sum = [Vector::default(); 3];
-    for k in 0..state.qd.len() {
-        let (at, rate) = (c(k) * e[k], state.qd[k]);
+    for (k, (e, (rate, acceleration))) in e.iter().zip(state.qd.iter().zip(state.qdd.iter())).enumerate() {
+        let at = c(k) * e;
         sum[0] += at;
-        sum[1] += at * Vector::new(0.0, rate);
-        sum[2] += at * Vector::new(-rate * rate, state.qdd[k]);
+        sum[1] += at * Vector::new(0.0, *rate);
+        sum[2] += at * Vector::new(-rate * rate, *acceleration);
     }
     sum
 }

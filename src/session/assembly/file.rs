@@ -212,7 +212,7 @@ impl Reading<'_> {
             );
             return Err(wrong("inertia", &said));
         }
-        if base.com.iter().any(|x| !(x.abs() <= 1e6)) {
+        if !base.com.iter().all(|x| x.abs() <= 1e6) {
             return Err(wrong("com", "want three numbers, m"));
         }
         Ok(AssemblyBase::Free(SpatialBase { mass, com: base.com.into(), inertia }))
