@@ -179,6 +179,15 @@ fn say_missing(missing: &[Range<u64>]) {
     }
 }
 
+/// Results of a summary whose machines were drawn again.
+struct DrawnAgain {
+    /// The first machine, and the last plus one.
+    machines: Range<u64>,
+    /// Machines in between, and of the whole study, that are in no part.
+    missing: Vec<Range<u64>>,
+    results: Option<PartResults>,
+}
+
 /// Returns that machines of a study are in no part, if some are.
 fn lacking(missing: &[Range<u64>], samples: u64) -> Option<String> {
     let count: u64 = missing.iter().map(|gap| gap.end - gap.start).sum();
@@ -326,9 +335,9 @@ impl ToleranceArguments {
         let mut missing = Vec::new();
         let (machines, results) = match &self.exact {
             Some(file) => {
-                let (machines, results);
-                (machines, missing, results) = self.exact_results(&ensemble, &run, (&study, file), limits)?;
-                (machines, results)
+                let again = self.exact_results(&ensemble, &run, (&study, file), limits)?;
+                missing = again.missing;
+                (again.machines, again.results)
             }
             None if self.summary => {
                 let sum = self.summarize(&ensemble, &run, limits, &range)?;
@@ -396,7 +405,7 @@ impl ToleranceArguments {
         run: &Run,
         (study, file): (&StudyId, &Path),
         limits: Limits,
-    ) -> Result<(Range<u64>, Vec<Range<u64>>, Option<PartResults>), Failure> {
+    ) -> Result<DrawnAgain, Failure> {
         let (own, sum) = read_summary(file)?;
         if own != *study {
             let why = "want the scenario and options that it was made with, --samples and --seed included";
@@ -455,7 +464,8 @@ impl ToleranceArguments {
         let held = sum.machines();
         let machines = held.first().map_or(0, |own| own.start)..held.last().map_or(0, |own| own.end);
         let yields = kept.filter(|_| counts_anew).map_or_else(|| sum.yields(), |kept| limits.yields(kept, sum.count()));
-        Ok((machines, missing, sum.results(&known).map(|results| PartResults { yields, ..results })))
+        let results = sum.results(&known).map(|results| PartResults { yields, ..results });
+        Ok(DrawnAgain { machines, missing, results })
     }
 
     /// Returns whether the extremes of a summary are those of their machines, which are drawn again.
