@@ -34,6 +34,9 @@ use stillbase_session::{Refusal, replay_while};
 const MOVING_S: f64 = 0.04;
 const SIGNALS_S: f64 = 0.01;
 
+/// Part of the reach of a machine around its base that the eye sees.
+const SEEN_REACH: f64 = 0.75;
+
 /// Maximum number of points of a trail.
 const MAX_TRAIL_POINTS: usize = 16_384;
 
@@ -201,11 +204,16 @@ impl<'a> AssemblyRecorder<'a> {
             let mount = frame.in_space(&(below + block.mount.at));
             let turn: Matrix3<f64> = frame.attitude.0.to_rotation_matrix().into_inner() * block.mount.axes;
             let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
-            let turn = [q.i, q.j, q.k, q.w].map(|x| x as f32);
-            self.places[i].push(at, Placed { turn, at: mount.map(|x| x as f32).into() });
+            let quaternion = [q.i, q.j, q.k, q.w].map(|x| x as f32);
+            self.places[i].push(at, Placed { turn: quaternion, at: mount.map(|x| x as f32).into() });
             let tip = frame.in_space(&frame.tips[i]);
             self.trails[i].push(|| tip.map(|x| x as f32).into(), is_last);
-            self.extent.extend([mount.into(), tip.into()]);
+            self.extent.push(tip.into());
+            // An arm reaches about as far to every side.
+            let reach = SEEN_REACH * block.machine.reach();
+            for [x, y] in [[reach, 0.0], [-reach, 0.0], [0.0, reach], [0.0, -reach]] {
+                self.extent.push((mount + turn * Vector3::new(x, y, 0.0)).into());
+            }
         }
     }
 
@@ -234,7 +242,10 @@ impl<'a> AssemblyRecorder<'a> {
                 range: group.range,
             })
         };
-        let plots = self.groups.iter().filter_map(plot).collect();
+        let mut shown: Vec<&Group> = self.groups.iter().collect();
+        // What the base feels comes first.
+        shown.sort_by_key(|group| !["force", "moment", "attitude", "base"].iter().any(|of| group.name.starts_with(of)));
+        let plots = shown.into_iter().filter_map(plot).collect();
         blueprint::lay_out_assembly(
             store,
             &AssemblyLayout { title: title.clone(), root: self.root.clone(), eye: self.eye(), plots },
@@ -273,7 +284,11 @@ impl<'a> AssemblyRecorder<'a> {
                 if frame.step.is_multiple_of(every) {
                     let stage = stage.get_or_insert_with(|| Stage::of(run));
                     let at = Instant::at(frame.step, frame.time);
-                    failed = space.draw(store, (at, None), &stage.scene(frame, &options));
+                    let mut scene = stage.scene(frame, &options);
+                    // Labels and grids of several planes would cover each other.
+                    scene.labels.clear();
+                    scene.lines.retain(|line| !line.name.starts_with("grid"));
+                    failed = space.draw(store, (at, None), &scene);
                 }
                 failed.is_ok() && frame.step < end && goes_on()
             });
