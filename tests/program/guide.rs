@@ -171,7 +171,7 @@ pages! {
     planning: "src/guide/planning.md", 6;
     plants: "src/guide/plants.md", 5;
     spacecraft: "src/guide/spacecraft.md", 4;
-    assemblies: "src/guide/assemblies.md", 9;
+    assemblies: "src/guide/assemblies.md", 10;
     inside: "src/guide/inside.md", 3;
     design: "src/guide/design.md", 4;
     elsewhere: "src/guide/elsewhere.md", 12;

@@ -1,5 +1,6 @@
 //! Recordings, read back with Rerun's own decoder and compared with the frames of the run.
 
+mod assembly;
 mod design;
 mod events;
 mod family;
