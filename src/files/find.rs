@@ -26,8 +26,8 @@ use stillbase_simulation::plant::{Base, BaseKind};
 const IS_ASSEMBLY: &str =
     "this is an assembly of several machines: want one machine; check, dynamics and simulate take an assembly, too";
 
-const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; simulate takes \
-                              this one, too";
+const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; simulate and \
+                              headless take this one, too";
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";

@@ -114,8 +114,16 @@ pub fn record_assembly(
     };
     let scenario = run.scenario();
     let mut hash = Hash::default();
-    for word in [env!("CARGO_PKG_VERSION"), &scenario.name, &format!("{scenario:?}")] {
+    for word in [env!("CARGO_PKG_VERSION"), &scenario.name, &format!("{:?} {}", scenario.base, scenario.step)] {
         hash.add(word);
+    }
+    for (block, task) in scenario.assembly.blocks().iter().zip(&scenario.tasks) {
+        hash.add(&stillbase_mechanics::machine::to_toml(&block.machine));
+        hash.add(&format!("{} {:?}", block.name, block.mount));
+        match task {
+            BlockTask::Moves(task) => hash.add(&task.to_toml()),
+            BlockTask::Rests(pose) => hash.add(&format!("{pose:?}")),
+        }
     }
     let root = EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]);
     let mut recorder = AssemblyRecorder::of(run, root);

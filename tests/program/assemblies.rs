@@ -110,7 +110,8 @@ fn blocks_follow_tasks_of_their_own() {
     );
     for (args, words) in [
         (&["design", "carrier-and-wrist"][..], "want one machine"),
-        (&["headless", "four-freedoms", "-o", "x.rrd"], "simulate takes this one"),
+        (&["spectrum", "four-freedoms"], "simulate and headless take this one"),
+        (&["headless", "case-1", "four-freedoms", "-o", "x.rrd"], "recorded by itself"),
         (&["simulate", "four-freedoms", "--signals", "nothing"], "no signal \"nothing\""),
         (&["simulate", "four-freedoms", "--set", "task.elbow.b=1"], "no block \"elbow\""),
         (&["simulate", "four-freedoms", "--set", "step=0"], "want 0.000001 to 0.1 s"),
