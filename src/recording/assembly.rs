@@ -35,7 +35,7 @@ const MOVING_S: f64 = 0.04;
 const SIGNALS_S: f64 = 0.01;
 
 /// Part of the reach of a machine around its base that the eye sees.
-const SEEN_REACH: f64 = 0.75;
+const SEEN_REACH: f64 = 0.5;
 
 /// Maximum number of points of a trail.
 const MAX_TRAIL_POINTS: usize = 16_384;
