@@ -12,7 +12,7 @@ use super::exit::print_message;
 use super::failure::Failure;
 use super::output::{Format, say_written};
 use super::progress::goes_on;
-use super::simulate_assembly::{AssemblyOutcome, reactions, refused};
+use super::simulate_assembly::{AssemblyOutcome, last_step, reactions, refused};
 use super::strict::Strict;
 
 /// Answer of a recording of an assembly.
@@ -32,6 +32,7 @@ pub fn record(
     strict: &Strict,
 ) -> Result<(), Failure> {
     let run = AssemblyRun::new(scenario).map_err(|(block, why)| refused(scenario, block, why))?;
+    last_step(&run)?;
     let seen = run.run(|_| goes_on());
     super::progress::check()?;
     let outcome = AssemblyOutcome::of(scenario, &seen);

@@ -116,11 +116,7 @@ impl SimulateArguments {
             true => Some(RowTarget::of(&self.format, &self.form, self.output.as_deref(), self.force)?),
             false => None,
         };
-        let last = run.steps().ok_or_else(|| {
-            let why =
-                format!("{}: more than 100000000 steps: want a larger step, or a shorter duration", scenario.name);
-            Failure::wrong_input(why)
-        })?;
+        let last = last_step(&run)?;
         check_size(last / self.every + 2, table.len() + 1, self.format.json)?;
         let head = || -> Vec<String> {
             let own = table.iter().map(|signal| format!("{} {}", signal.path, signal.unit));
@@ -171,6 +167,17 @@ impl SimulateArguments {
         }
         self.strict.require(faults)
     }
+}
+
+/// Returns the number of the last step.
+///
+/// # Errors
+/// If there are more than are simulated.
+pub fn last_step(run: &AssemblyRun) -> Result<u64, Failure> {
+    run.steps().ok_or_else(|| {
+        let name = &run.scenario().name;
+        Failure::wrong_input(format!("{name}: more than 100000000 steps: want a larger step, or a shorter duration"))
+    })
 }
 
 /// Returns what fails with `--strict`.

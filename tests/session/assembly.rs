@@ -79,13 +79,17 @@ fn a_floating_base_ends_as_in_the_reference() {
         close("attitude", &last.attitude.components(), &numbers(&run["attitude"]), 1e-9);
         close("origin", last.origin.as_slice(), &numbers(&run["origin"]), 1e-9);
         assert_eq!((led.steps(), verdict.steps), (Some(1000), 1000));
-        // Nine signals of the base, and five and a drive's four of each block.
-        assert_eq!(assembly_signals(&led).len(), 10 + 3 * 4 + 8 * 4);
+        // Ten signals of the base, four of each block, and three of a drive, whose torques are those of a base at rest.
+        assert_eq!(assembly_signals(&led).len(), 10 + 3 * 4 + 8 * 3);
         let silent = run["kind"].as_str().is_some_and(|kind| kind.contains("plane"));
         assert_eq!(silent, verdict.turn[0] < 1e-9, "{verdict:?}");
         let held = AssemblyScenario::parse(&sampled(run, time, ""), "led", assembly()).expect("a scenario");
         let held = AssemblyRun::new(&held).expect("a run").run(|_| true);
         assert_eq!(held.silent() == [true; 6], silent, "{held:?}");
+        let mut falling = assembly();
+        falling.set_gravity([0.0, 0.0, -9.81]).expect("in range");
+        let why = AssemblyScenario::parse(&sampled(run, time, &base), "led", falling).expect_err("gravity in orbit");
+        assert!(why.to_string().contains("want gravity = [0, 0, 0]"), "{why}");
     }
 }
 

@@ -169,6 +169,11 @@ impl Reading<'_> {
         let stem =
             std::path::Path::new(self.label).file_stem().map_or_else(|| self.label.into(), |s| s.to_string_lossy());
         let base = self.base(&file.base)?;
+        if base != AssemblyBase::Fixed && assembly.gravity != Vector3::zeros() {
+            let said =
+                "is free, but the assembly states gravity: want gravity = [0, 0, 0], as in orbit, or a fixed base";
+            return Err(self.wrong(&["base", "kind"], said));
+        }
         Ok(AssemblyScenario {
             name: file.name.unwrap_or_else(|| plain(&stem).into_owned()),
             title: file.title,

@@ -41,7 +41,10 @@ pub fn assembly_signals(run: &AssemblyRun) -> Vec<AssemblySignal> {
         let (own, lambda) = (&block.name, scenario.assembly.conditions(i).inertia.lambda());
         for (k, drive) in block.machine.spec().drives.iter().enumerate() {
             let name = format!("{own}.{}", drive.name);
-            add(format!("torque/{name}"), "N m", Box::new(move |frame| frame.torques[i][k]));
+            // Torques are those on a base at rest.
+            if scenario.base == AssemblyBase::Fixed {
+                add(format!("torque/{name}"), "N m", Box::new(move |frame| frame.torques[i][k]));
+            }
             add(format!("angle/{name}"), "rad", Box::new(move |frame| frame.states[i].q[k]));
             add(format!("rate/{name}"), "rad/s", Box::new(move |frame| frame.states[i].qd[k]));
             add(format!("acceleration/{name}"), "rad/s²", Box::new(move |frame| frame.states[i].qdd[k]));
