@@ -16,9 +16,9 @@
 //!
 //! # Closed form
 //! A body of mass m at R = r_0 + r + h z, with acceleration A = A_0 + r̈, and with inertia I about z, exerts −m A and
-//! −R × m A − z I q̈. Their sums over a block need no body: f = −M A_0 − G̈, and about the mount n = z n_B + i S̈ − (G + z Σ m h) × A_0,
-//! with n_B of the machine alone and i a quarter turn about z. A platform does not turn, so that a carried block brings its
-//! carrier a force at the end effector and no torque.
+//! −R × m A − z I q̈. Their sums over a block need no body: f = −M A_0 − G̈, and about the mount
+//! n = z n_B − i S̈ − (G + z Σ m h) × A_0, with n_B of the machine alone and i a quarter turn about z. A platform does not
+//! turn, so that a carried block brings its carrier a force at the end effector and no torque.
 //!
 //! # Source
 //! Papadopoulos and Abu-Abed, §6: machines of more degrees of freedom from reactionless ones as building blocks.
