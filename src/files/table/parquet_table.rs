@@ -256,7 +256,7 @@ fn append<T: DataType, V: Null>(
 fn unreadable(error: &ParquetError) -> String {
     match error {
         ParquetError::NYI(why) | ParquetError::General(why) if why.contains("compress") || why.contains("feature") => {
-            "compressed by a method that is not read here: want Parquet without compression, or with Snappy, gzip, LZ4 or, in a build that reads recordings, Zstandard".into()
+            "compressed by a method that is not read here: want Parquet without compression, or with Snappy, gzip, LZ4 or, in the program, Zstandard".into()
         }
         error => format!("{error}: want a whole Parquet file"),
     }
