@@ -177,7 +177,12 @@ fn instead(misnamed: &Misnamed, line: &Line<'_>) -> Vec<Proposal> {
 
 /// Prints help, or the error of a command line that cannot be parsed, with the nearest one that can; returns the exit
 /// status.
-pub(super) fn usage_status(error: &clap::Error, line: &Line<'_>) -> u8 {
+pub(super) fn usage_status(mut error: clap::Error, line: &Line<'_>) -> u8 {
+    if is_in_process() {
+        // How to give a value that looks like an option is of use in a shell only.
+        error.remove(ContextKind::Suggested);
+    }
+    let error = &error;
     if !error.use_stderr() {
         let printed = error.print().and_then(|()| io::stdout().flush());
         return status(printed.map_err(|e| Failure::standard_output(&e)), false, line);

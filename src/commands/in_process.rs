@@ -72,7 +72,7 @@ pub fn carry_out(line: impl IntoIterator<Item = OsString>) -> u8 {
     let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, asks_for_json(&matches))));
     match parsed {
         Ok((arguments, as_json)) => status(arguments.run(), as_json, &line),
-        Err(error) => usage_status(&error, &line),
+        Err(error) => usage_status(error, &line),
     }
 }
 

@@ -37,13 +37,23 @@ fn shards_put_together_are_the_whole() {
         // A shard may hold no machine.
         let parts = [("b", 12..30), ("none", 12..12), ("a", 0..12)].map(|(name, of)| write(named(name), STUDY, of));
         let merged = named("merged");
-        let (study, outcomes) = merge(&parts, (&merged, form), false).expect("all of it");
+        let (study, outcomes) = merge(&parts, (&merged, form), false, &|| true).expect("all of it").expect("goes on");
         assert_eq!((study, outcomes), (STUDY, (0..30).map(machine).collect()));
         let bytes = |file: &PathBuf| std::fs::read(file).expect("readable");
         assert!(bytes(&merged) == bytes(&whole), "{ending}");
         let part = StudyPart::open(&parts[0]).expect("a shard");
         assert_eq!((part.first_sample().expect("readable"), part.head.columns.len()), (Some(12), 5));
     }
+}
+
+#[test]
+fn a_stopped_merge_leaves_no_file() {
+    let folder = Folder::new("shards");
+    let parts = [write(folder.path("a.csv"), STUDY, 0..12), write(folder.path("b.csv"), STUDY, 12..30)];
+    let merged = folder.path("merged.csv");
+    let stopped = merge(&parts, (&merged, RowForm::Csv), false, &|| false).expect("no error");
+    assert_eq!((stopped, merged.exists()), (None, false));
+    assert_eq!(std::fs::read_dir(folder.path(".")).expect("the folder").count(), 2);
 }
 
 #[test]
@@ -63,13 +73,13 @@ fn what_is_no_whole_study_is_refused() {
         (vec![named("nowhere")], "want a plain file that can be read"),
         (vec![folder.path("a.txt")], "want a name that ends in .csv or .parquet"),
     ] {
-        let why = merge(&parts, (&named("merged"), RowForm::Csv), true).expect_err(want);
+        let why = merge(&parts, (&named("merged"), RowForm::Csv), true, &|| true).expect_err(want);
         assert!(matches!(&why, ShardError::Wrong(said) if said.contains(want)), "{why}");
     }
     // A single digit that differs is noticed.
     let text = std::fs::read_to_string(&b).expect("readable").replacen("0.112", "0.113", 1);
     std::fs::write(&b, text).expect("written");
-    let why = merge(&[a, b], (&named("merged"), RowForm::Csv), true).expect_err("changed");
+    let why = merge(&[a, b], (&named("merged"), RowForm::Csv), true, &|| true).expect_err("changed");
     assert!(why.to_string().contains("its checksum does not fit"), "{why}");
 }
 

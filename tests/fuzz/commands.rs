@@ -205,8 +205,8 @@ fn parts() {
         let good = std::fs::read(&part).expect("readable");
         fuzz(target, &[good], 150, |bytes, _| {
             std::fs::write(&part, bytes).expect("a place to write");
-            match merge(std::slice::from_ref(&part), (&whole, form), true) {
-                Ok((study, outcomes)) if outcomes.len() as u64 == study.samples => Ok(()),
+            match merge(std::slice::from_ref(&part), (&whole, form), true, &|| true) {
+                Ok(Some((study, outcomes))) if outcomes.len() as u64 == study.samples => Ok(()),
                 Ok(_) => Err("another number of machines than it says".into()),
                 Err(why) => is_short(&why.to_string()),
             }

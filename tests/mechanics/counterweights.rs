@@ -1,8 +1,9 @@
 //! Counterweights: against a conic solver of others, against the laws, and what is refused.
 
 use stillbase::mechanics::counterweights::{
-    Bound, BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock, FreeRotor,
-    Objective, PlacementTolerance, RotorFreedom, front, over_payloads, place_weights, worst_residual,
+    Bound, BoundRelaxation, CounterweightError, CounterweightSite, CounterweightSpec, CounterweightStock,
+    END_TOLERANCE, FreeRotor, Objective, PlacementTolerance, RotorFreedom, front, over_payloads, place_weights,
+    worst_residual,
 };
 use stillbase::mechanics::dynamics::mass_matrix;
 use stillbase::mechanics::machine::{CounterweightShape, Inertia, Length, Machine, builtin, parse, to_toml};
@@ -259,6 +260,43 @@ fn a_front_runs_from_light_to_quick() {
     for three in points.windows(3) {
         let slope = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]) / (b[1] - a[1]);
         assert!(slope(three[1], three[2]) < slope(three[0], three[1]) + 1e-3, "{three:?}");
+    }
+}
+
+/// Nothing is better than an end in one measure and, by more than the tolerance, in the other: masses and Σ D_k just below
+/// those of an end have no answer, or one that is no better.
+#[test]
+fn ends_of_a_front_have_the_least_of_both_measures() {
+    let mut noise = Noise::of(17);
+    for round in 0..12 {
+        let name = ["nine-link-bare", "nine-link-bare", "serial-3r"][round % 3];
+        let mut machine = family_machine(name);
+        for link in 0..machine.links().len() {
+            let of = &machine.links()[link];
+            let key = format!("link.{}.mass", of.name);
+            machine = machine.set(&key, &(of.mass * noise.between(0.5, 2.0)).to_string()).expect("in range");
+        }
+        let asked = weighing(&machine, Objective::mass());
+        let Ok(found) = front(&machine, &asked, 2) else { continue };
+        let measures = found.measures();
+        let (Some([mass, _]), Some([_, inertia])) = (measures.first(), measures.last()) else { panic!("ends") };
+        let least = |objective: Objective, max_added_mass, max_inertia| {
+            let asked = CounterweightSpec { max_added_mass, max_inertia, ..weighing(&machine, objective) };
+            place_weights(&machine, &asked).map(|placed| [placed.added_mass, momenta(&placed.machine)])
+        };
+        let [lightest, _] = least(Objective::mass(), None, None).expect("as before");
+        let [_, quickest] = least(Objective::inertia(), None, None).expect("as before");
+        assert!(*mass <= lightest * (1.0 + 2e-6) && *inertia <= quickest * (1.0 + 2e-6), "{name}: {measures:?}");
+        // The other measure, at this end, against a search within the same tolerance.
+        let tolerance = 1.0 + END_TOLERANCE;
+        let other = [
+            least(Objective::inertia(), Some(lightest * tolerance), None).map(|found| found[1] / measures[0][1]),
+            least(Objective::mass(), None, Some(quickest * tolerance))
+                .map(|found| found[0] / measures[measures.len() - 1][0]),
+        ];
+        for ratio in other.into_iter().flatten() {
+            assert!(ratio > 1.0 - 1e-4, "{name}: the other measure may be {ratio} times as large");
+        }
     }
 }
 

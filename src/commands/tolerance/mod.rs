@@ -28,7 +28,7 @@ use crate::failure::Failure;
 use crate::file_form::FileForm;
 use crate::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
 use crate::output::{Format, say_written};
-use crate::progress::Progress;
+use crate::progress::{Progress, goes_on};
 use crate::strict::Strict;
 use stillbase_settings::number::counted;
 
@@ -226,7 +226,8 @@ impl ToleranceArguments {
             let why = format!("{}: a summary, but other parts have every machine: want one kind", part.display());
             return Err(Failure::wrong_input(why));
         } else {
-            let (study, outcomes) = merge(&self.merge, (whole, row_form(ending)), self.force)?;
+            let merged = merge(&self.merge, (whole, row_form(ending)), self.force, &goes_on)?;
+            let (study, outcomes) = merged.ok_or(Failure::Stopped)?;
             (study, PartResults::of(&outcomes, &[], self.limits()), Vec::new())
         };
         let Some(results) = results else { return Err(Failure::no_answer("the parts hold no machine")) };

@@ -8,7 +8,11 @@ use super::rows::{StudyId, StudyPart, Writer, difference, outcome_of};
 use crate::row_file::RowForm;
 use stillbase_study::tolerance::SampleOutcome;
 
-/// Merges shards, given in any order, into one file of a format, or standard output, and returns the study and the outcomes of its machines.
+/// Number of rows between two questions whether to go on.
+const ROWS_BETWEEN_QUESTIONS: u64 = 4096;
+
+/// Merges shards, given in any order, into one file of a format, or standard output, and returns the study and the
+/// outcomes of its machines; `None` if `goes_on` says that it is to stop, and then no file is left.
 ///
 /// # Errors
 /// If a shard is unreadable or of another study, samples are duplicate or missing, or `whole` cannot be written.
@@ -16,7 +20,8 @@ pub fn merge(
     parts: &[PathBuf],
     whole: (&Path, RowForm),
     force: bool,
-) -> Result<(StudyId, Vec<SampleOutcome>), ShardError> {
+    goes_on: &dyn Fn() -> bool,
+) -> Result<Option<(StudyId, Vec<SampleOutcome>)>, ShardError> {
     let mut opened = Vec::with_capacity(parts.len());
     for file in parts {
         let part = StudyPart::open(file)?;
@@ -56,15 +61,19 @@ pub fn merge(
             next += 1;
             outcomes.push(outcome_of(row));
             writer.row(sample, row)?;
-            Ok(ControlFlow::Continue(()))
+            let asks = next.is_multiple_of(ROWS_BETWEEN_QUESTIONS);
+            Ok(if asks && !goes_on() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
         })?;
+        if !goes_on() {
+            return Ok(None);
+        }
         before = Some(file);
     }
     if next < head.study.samples {
         return Err(missing(next, head.study.samples - 1));
     }
     writer.finish()?;
-    Ok((head.study, outcomes))
+    Ok(Some((head.study, outcomes)))
 }
 
 fn missing(first: u64, last: u64) -> ShardError {

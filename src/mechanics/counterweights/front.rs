@@ -25,12 +25,14 @@ fn measures(placed: &PlacedCounterweights) -> [f64; 2] {
     [placed.added_mass, Inertia::of(&placed.machine).total_momentum()]
 }
 
-/// Relative tolerance within which two measures are equal.
-const RELATIVE_TOLERANCE: f64 = 1e-9;
+/// Relative amount by which an end of the Pareto front may lie above the least inertia or mass. Near a minimum, a small
+/// part of one measure is worth much of the other: its square root.
+pub const END_TOLERANCE: f64 = 1e-6;
 
 /// Returns `count` points of the Pareto front, at least two, or one if a single machine is best in both measures. The
-/// search begins with the points of least inertia and of least mass. Each further point bisects the widest gap, in the
-/// measure in which its neighbours differ most.
+/// search begins with the points of least inertia and of least mass. At each of these, the other measure is minimised
+/// within [`END_TOLERANCE`] of the first. Each further point bisects the widest gap, in the measure in which its
+/// neighbours differ most.
 ///
 /// # Errors
 /// As [`place_weights`], and if a rotor is free.
@@ -81,9 +83,30 @@ impl Query for FrontSearch {
     }
 }
 
-/// Returns whether two measures are equal to rounding.
+/// Returns whether two measures of the ends are equal: each end is exact to [`END_TOLERANCE`].
 fn alike(a: f64, b: f64) -> bool {
-    (a - b).abs() <= RELATIVE_TOLERANCE * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+    (a - b).abs() <= 2.0 * END_TOLERANCE * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+}
+
+/// Returns the end of the front with the least mass (axis 0) or inertia (axis 1), with the least of the other measure.
+fn end_of(
+    machine: &Machine,
+    mass: &CounterweightSpec,
+    inertia: &CounterweightSpec,
+    axis: usize,
+) -> Result<PlacedCounterweights, CounterweightError> {
+    let first = place_weights(machine, [mass, inertia][axis])?;
+    let bound = |asked: Option<f64>| {
+        let near = measures(&first)[axis] * (1.0 + END_TOLERANCE);
+        Some(asked.map_or(near, |most| most.min(near)))
+    };
+    let other = match axis {
+        0 => CounterweightSpec { max_added_mass: bound(mass.max_added_mass), ..inertia.clone() },
+        _ => CounterweightSpec { max_inertia: bound(inertia.max_inertia), ..mass.clone() },
+    };
+    // The second search can fail only by rounding at its bound, which has one solution.
+    let better = |second: &PlacedCounterweights| measures(second)[1 - axis] < measures(&first)[1 - axis];
+    Ok(place_weights(machine, &other).ok().filter(better).unwrap_or(first))
 }
 
 impl FrontSearch {
@@ -96,8 +119,11 @@ impl FrontSearch {
         }
         let (i, request) = match points.len() {
             // Least inertia comes first, so that it reports the errors that both objectives share.
-            0 => (0, inertia.clone()),
-            1 => (0, mass.clone()),
+            end @ (0 | 1) => {
+                let placed = end_of(machine, mass, inertia, 1 - end)?;
+                points.insert(0, (measures(&placed), placed));
+                return Ok(true);
+            }
             // If one machine is best in both measures, it is the whole Pareto front.
             last if [0, 1].iter().all(|axis| alike(points[0].0[*axis], points[last - 1].0[*axis])) => {
                 points.truncate(1);

@@ -38,7 +38,7 @@ mod unknowns;
 pub use crate::machine::MATERIALS;
 pub use crate::machine::ranges::DENSITY as DENSITY_RANGE;
 pub use broken::BrokenBound;
-pub use front::{Front, FrontSearch, front, front_while};
+pub use front::{END_TOLERANCE, Front, FrontSearch, front, front_while};
 pub use payload::{PayloadResidual, over_payloads};
 pub use place::{PlacedCounterweights, place_weights, place_weights_with, unreachable_by_weights, weights_if_any};
 pub use refusal::{Bound, BoundKind, BoundRelaxation, CounterweightError, RelaxedBounds};
