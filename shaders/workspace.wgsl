@@ -11,6 +11,7 @@ struct Frame {
 };
 
 struct Area {
+    world_from_plane: mat4x4<f32>,
     c: vec3<f32>,   // c_k, m
     turn: f32,      // b*, rad
     u1: vec3<f32>,  // first component of u_k
@@ -60,7 +61,7 @@ fn vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) i: u32) -
         value = sqrt(0.5 * (dot(x, x) + dot(y, y) + length(squares)));
     }
     var out: Varying;
-    out.clip = frame.clip_from_world * vec4<f32>(at, 1.0);
+    out.clip = frame.clip_from_world * (area.world_from_plane * vec4<f32>(at, 1.0));
     out.colour = area.colour;
     out.shade = area.shade;
     out.share = (value - area.empty) / (area.full - area.empty);

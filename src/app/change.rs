@@ -136,7 +136,7 @@ impl SessionSource {
     /// Reads, plans and replays the source. `watch` reports progress and can stop the work.
     pub fn open(self, watch: ProgressCallback<'_>) -> Result<Opened, NotOpened> {
         let read = |path: &Path| {
-            let found = stillbase_files::scenario(&path.display().to_string());
+            let found = stillbase_files::any_scenario(&path.display().to_string());
             found.map_err(|why| {
                 let report = why.faults().map(|(file, faults)| FileReport::of_faults(file, faults));
                 NotOpened { report, ..NotOpened::unread(&why) }

@@ -84,6 +84,8 @@ pub enum SessionCommand {
     DropBranch(usize),
     /// Move by a number of steps, and pause.
     Step(i64),
+    /// Lead another block of the assembly, by its place.
+    Lead(usize),
     /// Open another scenario in place of the session.
     Open(Box<Scenario>),
     /// Open a new drawing of a machine.

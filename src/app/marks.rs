@@ -147,7 +147,7 @@ impl Marks {
     /// Queries the marks of the session and of the runs shown in comparison.
     pub fn of(queries: &Queries, session: &Session, beside: Option<&Comparison>) -> Self {
         let watched = session.events(queries, FRAMES_PER_REPAINT);
-        let shakes = session.frames().last().is_some_and(|newest| !newest.peaks.is_reactionless());
+        let shakes = session.frames().last().is_some_and(|newest| !newest.was_reactionless());
         let marked = MarksInput {
             step: session.scenario().step,
             gestures: session.gestures(queries),
@@ -188,7 +188,7 @@ fn laid_over(beside: Option<&Comparison>) -> impl Iterator<Item = (&str, &Arc<Co
 
 /// Returns the mark at the peak base moment of a run, if it has reactions.
 fn worst(title: &str, run: &ComparedRun) -> Option<TimelineMark> {
-    let peaks = run.frames.last().map(|last| &last.peaks).filter(|peaks| !peaks.is_reactionless())?;
+    let peaks = run.frames.last().filter(|last| !last.was_reactionless()).map(|last| &last.peaks)?;
     let first = run.frames.iter().find(|frame| frame.peaks.arm_moment >= peaks.arm_moment)?;
     let words = format!("{title}: peak |n_B| {} N m", significant(peaks.arm_moment));
     Some(TimelineMark { time: first.time, words, tone: Tone::Peak })

@@ -53,7 +53,7 @@ impl OwnFile {
 
 impl OwnContent {
     fn of(path: &Path) -> Result<Self, String> {
-        let found = stillbase_files::scenario(&path.display().to_string());
+        let found = stillbase_files::any_scenario(&path.display().to_string());
         let scenario = found.map_err(|why| shorten_message(&why.to_string()).into_owned())?.scenario;
         let is_machine = read(path).is_ok_and(|text| content(&text) == Some(FileContent::Machine));
         let Scenario { machine, title, summary, name, .. } = &scenario;

@@ -52,7 +52,7 @@ pub struct LeftSession {
 impl LeftSession {
     /// Reads what a file holds that was written `when`, in words.
     pub fn of(file: PathBuf, when: String) -> Self {
-        let found = stillbase_files::scenario(&file.display().to_string());
+        let found = stillbase_files::any_scenario(&file.display().to_string());
         let holds = found.map_or_else(
             |why| format!("Its session cannot be read: {}", shorten_message(&why.to_string())),
             |found| contents(&found.scenario, &file),

@@ -116,7 +116,11 @@ impl<'a> ScenePointer<'a> {
                 named.or_else(|| self.arm(pos).map(|pick| pick.handle)).or_else(under)
             }
         };
-        view_state.pointed.object = self.response.hover_pos().and_then(seen);
+        // The reaction of a block alone is not drawn.
+        let is_drawn = |handle: &Handle| {
+            self.session.run().shared().is_none() || !matches!(handle, Handle::Force | Handle::Moment)
+        };
+        view_state.pointed.object = self.response.hover_pos().and_then(seen).filter(is_drawn);
     }
 
     /// Grabs the object that was under the pointer when the button was pressed; either may have moved since.

@@ -90,8 +90,9 @@ impl PictureOrder {
             Shot::View(view) => {
                 let notes = app_state.session().notes().to_vec();
                 let options = ViewOptions { theme: self.theme, show_hints: false, notes, ..ViewOptions::default() };
-                let camera = crate::viewport::camera(app_state.session(), app_state.views(), view, self.scene_size());
-                (app_state.views().scene(view, app_state.session().frame(), &options, &camera), camera)
+                let content = app_state.plain_content();
+                let camera = crate::viewport::camera(&content, view, self.scene_size());
+                (content.scene(view, &options, &camera), camera)
             }
         };
         if self.transparent {

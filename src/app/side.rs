@@ -71,8 +71,11 @@ pub fn show(
             } else {
                 of_machine(ui, session, facts, view_state, &p, commands);
             }
-            plant::show(ui, session, &p, commands);
-            base::show(ui, session, view_state, commands);
+            // The machine of a block, and its base, belong to the assembly.
+            if session.scenario().assembly.is_none() {
+                plant::show(ui, session, &p, commands);
+                base::show(ui, session, view_state, commands);
+            }
             control::show(ui, session, &p, commands);
             // While a drawing is unfinished, the balance would be that of the machine before.
             if session.run().unfinished().is_none() {
@@ -98,8 +101,10 @@ fn of_machine(
     if session.run().pose_space().is_ok() {
         place::place_of_thing(ui, Handle::Target, p, |ui| target(ui, session, p, commands));
     }
-    place::place_of_thing(ui, Handle::Joint(0), p, |ui| limits(ui, session, p, commands));
-    gravity(ui, session, p, commands);
+    if session.scenario().assembly.is_none() {
+        place::place_of_thing(ui, Handle::Joint(0), p, |ui| limits(ui, session, p, commands));
+        gravity(ui, session, p, commands);
+    }
     path::show(ui, session, p, commands);
 }
 

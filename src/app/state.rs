@@ -28,6 +28,7 @@ use super::saving::{LeftSession, Saving};
 use super::watched_file::WatchedFile;
 use super::{Activity, Framing, Intro, Layout, Message, Preferences, ResumePoint, SessionCommand, ViewState};
 use stillbase_mechanics::machine::Machine;
+use stillbase_picture::scene::blocks::BlockStages;
 use stillbase_picture::scene::exaggeration::{exaggeration, exaggeration_kept};
 use stillbase_picture::scene::palette::Theme;
 use stillbase_picture::scene::stage::Stage;
@@ -49,6 +50,8 @@ pub struct AppState {
     /// The machine before the gesture under way in the design view.
     designed_from: Option<Machine>,
     view_state: ViewState,
+    /// The other blocks of the assembly of which the machine is one.
+    blocks: Option<BlockStages>,
     /// The person's own session while the tour or the hints are on display.
     aside: Option<Box<aside::SetAside>>,
     /// The hints while they are shown, and whether to show them at the next start.
@@ -98,10 +101,12 @@ impl AppState {
         let background = Background::default();
         let views = Views::base_views(&background.queries, session.run(), None);
         let view_state = ViewState::new(theme, &views);
+        let blocks = BlockStages::of(session.run(), views.stage());
         let mut app_state = Self {
             designed_from: None,
             views,
             session,
+            blocks,
             view_state,
             aside: None,
             intro: None,
@@ -123,8 +128,16 @@ impl AppState {
             focuses_search: false,
             clipboard: None,
         };
+        app_state.show_blocks();
         app_state.run_ahead();
         app_state
+    }
+
+    /// Chooses the view that shows all blocks of an assembly.
+    fn show_blocks(&mut self) {
+        if self.session.scenario().assembly.is_some() && self.view_state.view == ViewKind::Flat {
+            self.view_state.view = ViewKind::Space;
+        }
     }
 
     /// Applies the user's preferences, and starts the introduction if the preferences and the scenario call for it.
@@ -325,7 +338,9 @@ impl AppState {
 
     /// The signals of the machine on display.
     fn signals(&self) -> Arc<Vec<Signal>> {
-        self.queries().ask::<QuickWork<SignalsOf>>(&self.session.scenario().machine)
+        let (machine, shared) = (&self.session.scenario().machine, self.session.frame().shared.map(|base| base.floats));
+        let is_known = |known: &(Machine, Option<bool>)| known.0 == *machine && known.1 == shared;
+        self.queries().ask_if::<QuickWork<SignalsOf>>(is_known, || (machine.clone(), shared))
     }
 
     /// Clears all cached queries, so that they are computed anew; the display stays the same.
@@ -341,6 +356,16 @@ impl AppState {
         let (run, queries) = (self.session.run(), self.queries());
         let made = Views::base_views(queries, run, None);
         let views = Views::completed(&made, queries, run, Some(self.view_state.drives));
+        match self.blocks.take().filter(|blocks| blocks.is_of(run)) {
+            Some(mut blocks) => {
+                blocks.join(views.stage());
+                self.blocks = Some(blocks);
+            }
+            None => {
+                self.blocks = BlockStages::of(run, views.stage());
+                self.view_state.framing.iter_mut().for_each(Framing::renew);
+            }
+        }
         if Arc::ptr_eq(&views, &self.views) {
             return;
         }

@@ -45,6 +45,7 @@ pub fn show(
             file_menu::show(ui, session, facts.queries, recent, view_state, commands);
             machines(ui, session, (facts, recent), view_state, commands);
             scenarios(ui, session, facts.queries, facts.work_differs, view_state, commands);
+            blocks(ui, session, commands);
             ui.add_space(8.0);
             transport(ui, session, view_state, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -160,6 +161,24 @@ fn scenarios(
         false => "What the machine does: keys 1, 2, 3",
     };
     name(&response.response.on_hover_text(format!("{current_text}\n{tip}")), "Scenario");
+}
+
+/// Draws the list of the blocks of an assembly, of which one is led.
+fn blocks(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+    let Some(own) = &session.scenario().assembly else { return };
+    let width = list_width(ui, own.name(), [90.0, 130.0]);
+    let text = chosen_text(ui, own.name(), false, width);
+    let combo = ComboBox::from_id_salt("block").selected_text(text).width(width);
+    let response = combo.show_ui(ui, |ui| {
+        for (i, block) in own.scenario.assembly.blocks().iter().enumerate() {
+            let words = format!("{} · {}", block.name, block.machine.name());
+            if ui.selectable_label(i == own.block, words).clicked() && i != own.block {
+                commands.push(SessionCommand::Lead(i).into());
+            }
+        }
+    });
+    let tip = "The block of the assembly that you lead: its machine, task and plots are shown, and 3D shows all blocks";
+    name(&response.response.on_hover_text(format!("{}\n{tip}", own.name())), "Block");
 }
 
 fn transport(ui: &mut Ui, session: &Session, view_state: &ViewState, commands: &mut Vec<Command>) {

@@ -24,8 +24,10 @@ use stillbase_picture::paint::labels::draw_labels;
 use stillbase_picture::paint::{SceneViewport, paint};
 use stillbase_picture::scene::Scene;
 use stillbase_picture::scene::beside::Beside;
+use stillbase_picture::scene::blocks::BlockStages;
 use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::exaggeration::{DrawnFrame, Exaggeration};
+use stillbase_picture::scene::framing::ViewContent;
 use stillbase_picture::scene::options::{Handle, OtherRun, ViewOptions, WeightOption};
 use stillbase_picture::scene::pick::Pick;
 use stillbase_picture::scene::views::{ViewKind, Views};
@@ -38,6 +40,8 @@ use stillbase_study::comparison::Comparison;
 pub struct SceneContent<'a> {
     pub session: &'a Session,
     pub views: &'a Views,
+    /// The other blocks of the assembly of which the machine is one; 3D shows them.
+    pub blocks: Option<&'a BlockStages>,
     /// Factor by which the motion of the base is enlarged.
     pub exaggeration: f64,
     pub comparison: Option<&'a Comparison>,
@@ -48,6 +52,40 @@ pub struct SceneContent<'a> {
     pub weights: &'a [WeightOption],
     /// The problem message that covers the scene.
     pub news: Option<&'a News>,
+}
+
+impl<'a> SceneContent<'a> {
+    /// Returns the other blocks, if the view shows them.
+    fn blocks_in(&self, view: ViewKind) -> Option<&'a BlockStages> {
+        self.blocks.filter(|_| view == ViewKind::Space)
+    }
+
+    /// Returns the points that the camera of a view has to show.
+    fn points(&self, view: ViewKind) -> ViewContent {
+        let (session, own) = (self.session, self.views.content(view, self.session.frame(), &motion(self.session)));
+        match self.blocks_in(view) {
+            Some(blocks) => blocks.content(own, session.frame(), session.others()),
+            None => own,
+        }
+    }
+
+    /// Returns the scene of a view.
+    pub fn scene(&self, view: ViewKind, options: &ViewOptions, camera: &Camera) -> Scene {
+        let (session, own) = (self.session, self.views.scene(view, self.session.frame(), options, camera));
+        match self.blocks_in(view) {
+            Some(blocks) => blocks.scene(own, session.frame(), session.others(), options),
+            None => own,
+        }
+    }
+
+    /// Returns the camera for the hand, which acts in the axes of the machine.
+    fn hand_camera(&self, view_state: &ViewState) -> Camera {
+        let (session, camera) = (self.session, *view_state.camera());
+        match self.blocks_in(view_state.view) {
+            Some(blocks) => camera.of_block(blocks.place(session.frame(), session.others())),
+            None => camera,
+        }
+    }
 }
 
 /// Draws the scene and handles the pointer; returns the rectangle of the scene.
@@ -81,17 +119,11 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         // A run that waits does so until something changes: its message must not cover the machine.
         let wait = news.filter(|news| news.says_wait()).and_then(|_| status::news::rect(ui.ctx()));
         covered.extend(wait);
-        framing::keep_framed(
-            rect,
-            (&covered, wait),
-            views,
-            |view| views.content(view, session.frame(), &motion(session)),
-            view_state,
-        );
+        framing::keep_framed(rect, (&covered, wait), views, |view| content.points(view), view_state);
         name(&response, "Scene: the machine, its reactionless workspace and its target");
         // The pointer acts on the machine as drawn, including the enlarged motion of the base.
         let shown = DrawnFrame::of(session.frame(), exaggeration);
-        let spot = SceneViewport { rect, camera: *view_state.camera() };
+        let spot = SceneViewport { rect, camera: content.hand_camera(view_state) };
         if matches!(view_state.tool, Tool::Draw(_)) && view_state.view.shows_machine() {
             draw(ui, &response, &spot, views, view_state, commands);
         } else {
@@ -129,9 +161,9 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
             exaggeration,
             ..options(content, view_state)
         };
-        let scene = Arc::new(views.scene(view_state.view, session.frame(), &options, view_state.camera()));
+        let scene = Arc::new(content.scene(view_state.view, &options, view_state.camera()));
         paint(ui, 0, rect, &scene, view_state.camera());
-        let spot = SceneViewport { rect, camera: *view_state.camera() };
+        let (hand, spot) = (spot, SceneViewport { rect, camera: *view_state.camera() });
         // Any other message covers the scene while it lasts.
         covered.extend(news.filter(|news| !news.says_wait()).and_then(|_| status::news::rect(ui.ctx())));
         if let Some((pair, _)) = both.filter(|_| !presents) {
@@ -140,7 +172,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         if presents {
             covered.extend(present::show(ui, rect, session, view_state, commands));
         }
-        let seen = |at: [f64; 3]| spot.screen(at).is_some_and(|at| rect.contains(at));
+        let seen = |at: [f64; 3]| hand.screen(at).is_some_and(|at| rect.contains(at));
         let is_partly_out = view_state.view.shows_machine() && !views.stage().outline(&shown).all(seen);
         covered.extend(is_partly_out.then(|| corner::recentre_covers(rect)));
         let placed = draw_labels(ui, 0, &spot, &scene, &covered);
@@ -154,7 +186,7 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         let things = tour.map(Tour::points_at).or(intro.map(Intro::points_at)).unwrap_or_default();
         let in_scene = |thing: Pointed| {
             let shows = view_state.view.shows_machine();
-            thing.in_scene(&spot, views.stage(), &shown).filter(|place| shows && rect.contains(place.center()))
+            thing.in_scene(&hand, views.stage(), &shown).filter(|place| shows && rect.contains(place.center()))
         };
         let mentioned: Vec<Rect> = things.iter().copied().filter_map(in_scene).collect();
         // A card leaves free the target, the ring of b and the base, too.
@@ -177,30 +209,28 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
 
 /// Returns the camera of a picture of a view alone, of a size in points. It shows areas of turns to their ends, the same
 /// at every instant of the run.
-pub fn camera(session: &Session, views: &Views, view: ViewKind, size: [f32; 2]) -> Camera {
+pub fn camera(content: &SceneContent<'_>, view: ViewKind, size: [f32; 2]) -> Camera {
+    let SceneContent { session, views, .. } = content;
     let camera = views.camera(view);
+    let area = framing::area(Rect::from_min_size(egui::Pos2::ZERO, size.into()), &[]);
+    if content.blocks_in(view).is_some() {
+        return content.points(view).framed(camera, &area);
+    }
     if !(view.shows_machine() && views.stage().has_turn_areas()) {
         return camera;
     }
-    let area = framing::area(Rect::from_min_size(egui::Pos2::ZERO, size.into()), &[]);
     let start = session.frames().first().unwrap_or(session.frame());
     views.content(view, start, &motion(session)).framed(camera, &area)
 }
 
 /// Returns the scene on display without hints at gestures, framed for a picture of a size in points.
 pub fn still(content: SceneContent<'_>, size: [f32; 2], view_state: &mut ViewState) -> (Scene, Camera) {
-    let SceneContent { session, views, .. } = content;
+    let views = content.views;
     let rect = Rect::from_min_size(egui::Pos2::ZERO, size.into());
-    framing::keep_framed(
-        rect,
-        (&[], None),
-        views,
-        |view| views.content(view, session.frame(), &motion(session)),
-        view_state,
-    );
+    framing::keep_framed(rect, (&[], None), views, |view| content.points(view), view_state);
     let options = ViewOptions { show_hints: false, ..options(content, view_state) };
     let camera = *view_state.camera();
-    (views.scene(view_state.view, session.frame(), &options, &camera), camera)
+    (content.scene(view_state.view, &options, &camera), camera)
 }
 
 /// Returns the options that the scene in the window and a still picture of it have in common.

@@ -6,7 +6,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_recording::{AssemblyRecordError, record_assembly};
 use stillbase_session::assembly::{AssemblyRun, AssemblyScenario};
-use stillbase_study::assembly_check::AssemblyReport;
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -33,20 +32,17 @@ pub fn record(
 ) -> Result<(), Failure> {
     let run = AssemblyRun::new(scenario).map_err(|(block, why)| refused(scenario, block, why))?;
     last_step(&run)?;
-    let seen = run.run(|_| goes_on());
-    super::progress::check()?;
-    let outcome = AssemblyOutcome::of(scenario, &seen);
-    let note = AssemblyReport::of(&scenario.assembly).markdown(&scenario.title, outcome.sentence());
-    record_assembly(&run, (file, force), &note, &goes_on).map_err(|error| match error {
+    let seen = record_assembly(&run, (file, force), &goes_on).map_err(|error| match error {
         AssemblyRecordError::Stopped => Failure::Stopped,
         AssemblyRecordError::Write(error) => error.into(),
         other => Failure::wrong_input(other),
     })?;
+    let outcome = AssemblyOutcome::of(scenario, &seen);
     say_written(file);
     let name = &scenario.name;
     let faults = reactions(scenario, &outcome);
     let answer = AssemblyRecorded { scenario: name.clone(), file: file.display().to_string(), verdict: outcome };
-    print_message(format!("{name}: {}", answer.verdict.sentence()));
+    print_message(format!("{name}: {}", answer.verdict.sentence));
     format.print(&answer, |_| String::new())?;
     strict.require(faults)
 }

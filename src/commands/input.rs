@@ -297,7 +297,9 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
 /// # Errors
 /// If the file, its assembly or a setting is wrong.
 pub fn assembly_scenario(name: &str, settings: &Settings) -> Result<Option<AssemblyScenario>, Failure> {
-    let is_of_file = |key: &str| ["task", "base", "step", "duration"].contains(&key.split('.').next().unwrap_or(key));
+    let is_of_file = |key: &str| {
+        ["task", "base", "step", "duration", "lead", "scenario"].contains(&key.split('.').next().unwrap_or(key))
+    };
     let [of_file, of_blocks] = [true, false].map(|wanted| settings.of_keys(|key| is_of_file(key) == wanted));
     let apply = |assembly| of_blocks.apply_to_assembly(assembly);
     stillbase_files::assembly_scenario(name, &of_file.change(), apply)
@@ -409,6 +411,23 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
     refuse_ineffective(&scenario, settings)?;
     report_idle(&scenario);
     Ok(scenario)
+}
+
+/// Does the same as [`overlay_for_study`], and takes assemblies: then the scenario is that of the block which is led.
+///
+/// # Errors
+/// As [`overlay_for_study`], and if the scenario of an assembly is wrong.
+#[cfg(feature = "ui")]
+pub fn overlay_of_any(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    if let Some(whole) = assembly_scenario(name, settings)? {
+        return Ok(whole.leading(whole.lead));
+    }
+    if !settings.is_empty() || stillbase_files::assembly(name)?.is_none() {
+        return overlay_for_study(name, settings);
+    }
+    let found = stillbase_files::any_scenario(name)?;
+    found.note.iter().for_each(|note| print_message(format!("note: {name}: {note}")));
+    Ok(found.scenario)
 }
 
 /// Does the same as [`overlay_for_study`], but accepts settings without an effect: other arguments may give them one.

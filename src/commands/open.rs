@@ -17,7 +17,11 @@ use stillbase_session::scenario::Scenario;
 #[cfg(any(feature = "window", feature = "record"))]
 use super::exit::print_message;
 use super::failure::Failure;
-use super::input::{DEFAULT_SCENARIO, Settings, overlay_for_study};
+#[cfg(not(feature = "ui"))]
+use super::input::overlay_for_study;
+#[cfg(feature = "ui")]
+use super::input::overlay_of_any;
+use super::input::{DEFAULT_SCENARIO, Settings};
 
 /// Arguments of the program without a subcommand.
 #[derive(Args)]
@@ -68,7 +72,11 @@ impl OpenArguments {
 
     /// Shows the scenario in a window, or records it if there is no window.
     pub fn run(&self) -> Result<(), Failure> {
-        let scenario = overlay_for_study(&self.scenario, &self.settings).map_err(|failure| match failure {
+        #[cfg(feature = "ui")]
+        let found = overlay_of_any(&self.scenario, &self.settings);
+        #[cfg(not(feature = "ui"))]
+        let found = overlay_for_study(&self.scenario, &self.settings);
+        let scenario = found.map_err(|failure| match failure {
             // The name may be a mistyped command.
             failure if Scenario::builtin(&self.scenario).is_none() && !self.scenario.ends_with(".toml") => {
                 let failure = failure.worded(&|why| format!("{why}; `stillbase --help` lists the commands"));

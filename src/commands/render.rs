@@ -15,7 +15,7 @@ use stillbase_settings::number::{counted, fixed};
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::input::{DEFAULT_SCENARIO, Settings, no_use, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, no_use, overlay_of_any};
 use super::open::ThemeName;
 use super::output::{Format, file_words};
 use super::progress::{Progress, goes_on};
@@ -168,7 +168,7 @@ impl RenderArguments {
             let why = "the window shows its own plots: want a view, such as --view flat";
             return Err(Failure::wrong_input(why).with_context("--plots"));
         }
-        let scenario = scenario(&self.scenario, &self.settings)?;
+        let scenario = overlay_of_any(&self.scenario, &self.settings)?;
         let mut app_state =
             AppState::new(scenario.clone(), Theme::Dark).map_err(|why| Failure::refused(&scenario, why))?;
         let end = app_state.run_to_end();

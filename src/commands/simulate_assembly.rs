@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_session::assembly::{
-    AssemblyBase, AssemblyRun, AssemblyScenario, AssemblySignal, AssemblyVerdict, BlockTask, assembly_signals,
+    AssemblyBase, AssemblyRun, AssemblyScenario, AssemblySignal, AssemblyVerdict, assembly_signals,
 };
-use stillbase_settings::number::{counted, fixed, fixed_or_finer};
+use stillbase_settings::number::{counted, fixed};
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -37,7 +37,7 @@ pub struct AssemblyOutcome {
     /// The same at the end, rad.
     #[serde(skip_serializing_if = "Option::is_none")]
     base_angle_end: Option<f64>,
-    sentence: String,
+    pub sentence: String,
 }
 
 /// Answer of a run of an assembly.
@@ -50,39 +50,13 @@ pub struct AssemblyAnswer {
     verdict: AssemblyOutcome,
 }
 
-const COMPONENTS: [&str; 6] = ["f_x", "f_y", "f_z", "n_x", "n_y", "n_z"];
-
 impl AssemblyOutcome {
-    /// Returns the result in a sentence.
-    pub fn sentence(&self) -> &str {
-        &self.sentence
-    }
-
     /// Returns the results of a run.
     pub fn of(scenario: &AssemblyScenario, verdict: &AssemblyVerdict) -> Self {
         let three = |from: usize| std::array::from_fn(|i| verdict.peaks[from + i]);
         let (is_fixed, silent) = (scenario.base == AssemblyBase::Fixed, verdict.silent());
         let each = |from: usize| std::array::from_fn(|i| silent[from + i]);
-        let sentence = match is_fixed {
-            true => {
-                let loud: Vec<String> = (COMPONENTS.iter().zip(verdict.peaks).zip(silent))
-                    .filter(|(_, silent)| !silent)
-                    .map(|((name, peak), _)| {
-                        let unit = if name.starts_with('f') { "N" } else { "N m" };
-                        format!("{name} up to {} {unit}", fixed_or_finer(peak, 6))
-                    })
-                    .collect();
-                match loud[..] {
-                    [] => "silent: nothing reaches the base in any of six components".to_owned(),
-                    _ => format!("reacts: {}", loud.join(", ")),
-                }
-            }
-            false => format!(
-                "the base turns by up to {} rad, and by {} rad at the end",
-                fixed_or_finer(verdict.turn[0], 6),
-                fixed_or_finer(verdict.turn[1], 6)
-            ),
-        };
+        let sentence = verdict.sentence(is_fixed);
         Self {
             steps: verdict.steps,
             peak_force: is_fixed.then(|| three(0)),
@@ -99,10 +73,7 @@ impl AssemblyOutcome {
 /// Returns why the task of a block cannot be planned, with what would do: keys get the name of the block.
 pub fn refused(scenario: &AssemblyScenario, block: usize, why: stillbase_session::Refusal) -> Failure {
     let name = &scenario.assembly.blocks()[block].name;
-    match &scenario.tasks[block] {
-        BlockTask::Moves(task) => Failure::refused(task, why).of_block(name),
-        BlockTask::Rests(_) => Failure::from(why),
-    }
+    Failure::refused(&scenario.tasks[block].scenario, why).of_block(name)
 }
 
 impl SimulateArguments {
@@ -191,7 +162,7 @@ fn summary(outcome: &AssemblyOutcome, name: &str, signals: usize) -> String {
     let mut table = TextTable::new(["", "", ""]).with_words(2);
     let peaks = [(outcome.peak_force, "N"), (outcome.peak_moment, "N m")];
     let all = peaks.into_iter().flat_map(|(three, unit)| three.into_iter().flatten().map(move |peak| (peak, unit)));
-    for (component, (peak, unit)) in COMPONENTS.iter().zip(all) {
+    for (component, (peak, unit)) in AssemblyVerdict::COMPONENTS.iter().zip(all) {
         table.row([format!("peak |{component}|"), fixed(peak, 9), unit.into()]);
     }
     let turns =

@@ -166,15 +166,49 @@ pub fn assembly_scenario<E: From<ScenarioError>>(
     };
     let table: Option<toml::Table> = text.as_ref().and_then(|text| text.parse().ok());
     let Some((text, table)) = text.zip(table) else { return Ok(None) };
-    let Some(machine) = table.get("machine").and_then(toml::Value::as_str) else { return Ok(None) };
-    let is_known = builtin_assemblies().iter().any(|own| own.name == machine);
-    let beside = file.parent().filter(|_| !is_known).map_or_else(|| machine.into(), |folder| folder.join(machine));
-    let found = assembly(&beside.display().to_string()).map_err(ScenarioError::from)?;
-    let Some(found) = found else { return Ok(None) };
+    let found = match table.get("machine") {
+        Some(toml::Value::String(machine)) => {
+            let is_known = builtin_assemblies().iter().any(|own| own.name == *machine);
+            let beside =
+                file.parent().filter(|_| !is_known).map_or_else(|| machine.into(), |folder| folder.join(machine));
+            assembly(&beside.display().to_string())
+        }
+        // A session that was saved holds its assembly.
+        Some(toml::Value::Table(whole)) if whole.contains_key("block") => {
+            let find = |name: &str| machine(name, file.parent());
+            assembly::parse(&whole.to_string(), &shortened(label(name), 300), &find).map(Some)
+        }
+        _ => return Ok(None),
+    };
+    let Some(found) = found.map_err(ScenarioError::from)? else { return Ok(None) };
     let assembly = apply(found)?;
     // With settings, lines are no longer those of the file.
     let text = if change.is_empty() { text } else { change::join(table, change).to_string() };
     Ok(Some(AssemblyScenario::parse(&text, &shortened(label(name), 300), assembly)?))
+}
+
+/// Returns a scenario as [`scenario`] does. Of an assembly, returns that of the block which its file leads; for the name or
+/// file of an assembly alone, makes a task for each of its blocks.
+///
+/// # Errors
+/// As [`scenario`], and if a scenario of an assembly is wrong.
+pub fn any_scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
+    let leads = |whole: AssemblyScenario, note| FoundScenario {
+        scenario: whole.leading(whole.lead),
+        note,
+        left_out: Vec::new(),
+        recorded: None,
+    };
+    if let Some(whole) = assembly_scenario::<ScenarioError>(name, &toml::Table::new(), Ok)? {
+        return Ok(leads(whole, None));
+    }
+    match assembly(name).map_err(ScenarioError::from)? {
+        Some(assembly) => {
+            let note = "a motion was made for each block of the assembly";
+            AssemblyScenario::for_assembly(assembly).map(|whole| leads(whole, Some(note.into())))
+        }
+        None => scenario(name),
+    }
 }
 
 /// Returns a machine that everyone has: a built-in one, or that of a template for drawings.

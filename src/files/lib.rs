@@ -44,7 +44,9 @@ pub mod video;
 pub use afloat::{floating_base, left_out_of_base, scenario_afloat, scenario_on_free_base};
 #[doc(hidden)]
 pub use draft::{WriteBlock, abandon};
-pub use find::{FoundMachine, FoundScenario, assembly, assembly_scenario, found_machine, machine, model, scenario};
+pub use find::{
+    FoundMachine, FoundScenario, any_scenario, assembly, assembly_scenario, found_machine, machine, model, scenario,
+};
 pub use new_file::{NewFile, WriteError, write_new};
 #[doc(hidden)]
 pub use new_file::{check_new, finish_all, free_name, is_same_place, is_standard, write_temporary};

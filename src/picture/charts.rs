@@ -18,6 +18,7 @@ use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_planning::pose_space::constant_inertia;
+use stillbase_session::assembly::AssemblyBase;
 use stillbase_session::scenario::Scenario;
 use stillbase_simulation::frame::Peaks;
 use stillbase_simulation::signals::Signal;
@@ -157,6 +158,9 @@ const CHANGE_POINT: Chart =
 /// Returns the charts that apply to a scenario, in order of display. `wheels_differ` says that of the runs on display
 /// some have a reaction wheel and some have none.
 pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
+    if let Some(block) = &scenario.assembly {
+        return charts_of_block(scenario, block.scenario.base != AssemblyBase::Fixed);
+    }
     let feels_more = scenario.base.feels_more_than_n_b();
     let has_friction = scenario.plant.friction != Default::default();
     let moment = match (wheels_differ, feels_more) {
@@ -173,6 +177,44 @@ pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
     list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TILT, TRANSMISSION, CHANGE_POINT]);
     list.extend(Some(TURN).filter(|_| scenario.base.moves()));
+    let size = load_scale(scenario);
+    for chart in list.iter_mut().filter(|chart| chart.unit.starts_with('N')) {
+        chart.min_range *= size;
+    }
+    list
+}
+
+/// Force and moment on the base that the blocks of an assembly share.
+const SHARED_FORCE: Chart = Chart {
+    title: "Base force",
+    unit: "N",
+    signals: &["force/dynamic_x", "force/dynamic_y", "force/dynamic_z"],
+    min_range: 0.5,
+    ..EMPTY_CHART
+};
+const SHARED_MOMENT: Chart = Chart {
+    title: "Base moment",
+    unit: "N m",
+    signals: &["moment/dynamic_x", "moment/dynamic_y", "moment/dynamic_z"],
+    ..SHARED_FORCE
+};
+const SHARED_ATTITUDE: Chart = Chart {
+    title: "Base attitude",
+    unit: "1",
+    signals: &["attitude/base_x", "attitude/base_y", "attitude/base_z"],
+    min_range: 1e-4,
+    ..EMPTY_CHART
+};
+const SHARED_PLACE: Chart =
+    Chart { title: "Base place", unit: "mm", signals: &["base"], min_range: 0.01, scale: 1e3, ..EMPTY_CHART };
+
+/// Returns the charts of a block of an assembly: its own, and those of the base that all blocks share.
+fn charts_of_block(scenario: &Scenario, floats: bool) -> Vec<Chart> {
+    let mut list = vec![TORQUE, SHARED_MOMENT, SHARED_FORCE];
+    list.extend([SHARED_ATTITUDE, SHARED_PLACE].into_iter().filter(|_| floats));
+    list.extend([PINS, ANGLES]);
+    list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
+    list.extend([EACH_PIN, TRANSMISSION, CHANGE_POINT]);
     let size = load_scale(scenario);
     for chart in list.iter_mut().filter(|chart| chart.unit.starts_with('N')) {
         chart.min_range *= size;
@@ -228,6 +270,11 @@ impl Chart {
     }
 }
 
+/// Returns the axis of a component in space of a base that blocks share, from 0; `None` for other signals.
+fn in_space(signal: &Signal) -> Option<usize> {
+    "xyz".find(signal.path.chars().last()?).filter(|_| signal.is_of_shared_base())
+}
+
 /// Returns the colour of a signal in every chart. Reactions are red if their peak counts as nonzero, otherwise green.
 pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
     let paler = |rgba| mix(rgba, palette.dim, 0.6);
@@ -238,6 +285,7 @@ pub fn colour(signal: &Signal, palette: &Palette, peaks: &Peaks) -> Rgba {
         (Some(k), ..) => palette.drive(k),
         (None, _, "pose/b_reference") => paler(palette.amber),
         (None, "pose", _) => palette.amber,
+        (None, ..) if in_space(signal).is_some() => palette.drive(in_space(signal).unwrap_or_default()),
         (None, "base", "base/y") => palette.dim,
         (None, "attitude", _) => palette.reaction,
         (None, _, "moment/total") => reaction(turns),

@@ -26,9 +26,10 @@ use stillbase_picture::scene::options::ViewOptions;
 use stillbase_picture::scene::palette::{Palette, Theme, mix, palette};
 use stillbase_picture::scene::stage::Stage;
 use stillbase_session::assembly::{
-    AssemblyFrame, AssemblyRun, AssemblySignal, AssemblyVerdict, BlockTask, assembly_signals,
+    AssemblyBase, AssemblyFrame, AssemblyRun, AssemblySignal, AssemblyVerdict, assembly_signals,
 };
 use stillbase_session::{Refusal, replay_while};
+use stillbase_study::assembly_check::AssemblyReport;
 
 /// Longest interval between rows of what moves, and of signals, s.
 const MOVING_S: f64 = 0.04;
@@ -96,15 +97,14 @@ fn groups(signals: &[AssemblySignal]) -> Vec<Group> {
     groups
 }
 
-/// Runs a scenario of an assembly and records it in a file, which appears when it is complete. `note` is shown beside the
-/// scene, as Markdown. `goes_on` says whether to continue.
+/// Runs a scenario of an assembly and records it in a file, which appears when it is complete, with what its check and
+/// the run say beside the scene. `goes_on` says whether to continue.
 ///
 /// # Errors
 /// If a block cannot be drawn, the file exists already or cannot be written, or `goes_on` returns false.
 pub fn record_assembly(
     run: &AssemblyRun,
     (file, force): (&Path, bool),
-    note: &str,
     goes_on: &dyn Fn() -> bool,
 ) -> Result<AssemblyVerdict, AssemblyRecordError> {
     let to = NewFile::create(file, force)?;
@@ -120,10 +120,7 @@ pub fn record_assembly(
     for (block, task) in scenario.assembly.blocks().iter().zip(&scenario.tasks) {
         hash.add(&stillbase_mechanics::machine::to_toml(&block.machine));
         hash.add(&format!("{} {:?}", block.name, block.mount));
-        match task {
-            BlockTask::Moves(task) => hash.add(&task.to_toml()),
-            BlockTask::Rests(pose) => hash.add(&format!("{pose:?}")),
-        }
+        hash.add(&task.scenario.to_toml());
     }
     let root = EntityPath::new(vec![EntityPathPart::new(scenario.name.as_str())]);
     let mut recorder = AssemblyRecorder::of(run, root);
@@ -132,7 +129,9 @@ pub fn record_assembly(
     recorder.write_head(&mut store).map_err(because)?;
     recorder.write_blocks(&mut store, goes_on, &because)?;
     recorder.write_signals(&mut store).map_err(because)?;
-    recorder.write_notes(&mut store, note).map_err(because)?;
+    let run = verdict.sentence(scenario.base == AssemblyBase::Fixed);
+    let note = AssemblyReport::of(&scenario.assembly).markdown(&scenario.title, &run);
+    recorder.write_notes(&mut store, &note).map_err(because)?;
     if let Some(written) = store.close().map_err(because)? {
         written.finish()?;
     }
@@ -282,7 +281,7 @@ impl<'a> AssemblyRecorder<'a> {
             store.columns(&clock.columns(), &path, columns).map_err(because)?;
             let trail = lines([self.trails[i].take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
             store.fixed(&under(&self.root, &format!("trail/{name}")), &trail).map_err(because)?;
-            let BlockTask::Moves(task) = task else { continue };
+            let task = &task.scenario;
             let mut space = RecordingSpace::new(path, eye, self.palette.background);
             let options = ViewOptions { show_hints: false, ..ViewOptions::default() };
             let (mut stage, mut failed) = (None::<Stage>, Ok(()));

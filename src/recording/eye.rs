@@ -59,7 +59,7 @@ impl Eye {
     /// Converts a camera to an eye in a space with the given axes.
     pub fn of(camera: &Camera, axes: [usize; 3]) -> Self {
         match camera {
-            Camera::Orbit(orbit) => Self::along(*orbit, axes),
+            Camera::Orbit(orbit) | Camera::OfBlock(orbit, _) => Self::along(*orbit, axes),
             Camera::Flat(FlatCamera { centre, half_height }) => Self::above(*centre, 2.0 * half_height),
         }
     }

@@ -12,7 +12,9 @@ use super::eye::Eye;
 use super::store::{Instant, Store, StoreError};
 use super::style::under;
 use stillbase_picture::scene::palette::mix;
-use stillbase_picture::scene::{Anchor, Area, ItemChanges, Label, Marker, MeshSet, Polyline, Rgba, Scene, Solid};
+use stillbase_picture::scene::{
+    Anchor, Area, IN_PLACE, ItemChanges, Label, Marker, MeshSet, Polyline, Rgba, Scene, Solid,
+};
 
 /// Difference in height between consecutive lines that are drawn over everything, px.
 const LINE_SPACING_PX: f32 = 0.1;
@@ -98,7 +100,7 @@ impl RecordingSpace {
         scene.solids.iter().for_each(|solid| self.solid(solid, &scene.model));
         scene.areas.iter().for_each(|area| {
             let pose = area.world_from_item();
-            let flat = Area { turn: 0.0, at: [0.0; 2], z: 0.0, ..area.clone() };
+            let flat = Area { turn: 0.0, at: [0.0; 2], z: 0.0, world_from_plane: IN_PLACE, ..area.clone() };
             let entity = self.entity(EntityKind::Area, &area.name);
             (entity.constant, entity.pose) =
                 (Some(StaticShape::Sheet(flat)), Some((Rigid::of(&pose), ItemChanges::Pose)));

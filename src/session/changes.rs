@@ -12,6 +12,9 @@ use stillbase_settings::range::shortened;
 /// Returns the scenario with the settings or the push of an edit applied. Nothing is planned or checked; see
 /// [`checked`]. Drags and poses do not change the scenario.
 pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refusal> {
+    if let Some(block) = &scenario.assembly {
+        block.check(edit)?;
+    }
     let mut scenario = scenario.clone();
     match edit {
         Edit::Push { x, y } => {

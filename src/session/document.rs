@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::changes::{ScriptError, changed};
 use super::edit::{Edit, TimedEdit};
 use super::machines::Machines;
+use super::other_frames::OtherFrames;
 use super::replay;
 use super::run::Run;
 use super::script::Script;
@@ -53,6 +54,8 @@ pub(super) struct DocumentRun {
     pub run: Run,
     /// One frame for each step.
     pub frames: Sequence<Frame>,
+    /// Those of the other blocks of an assembly.
+    pub others: OtherFrames,
     pub machines: Machines,
 }
 
@@ -101,15 +104,16 @@ impl Document {
         end: impl FnOnce(&Run) -> u64,
         watch: ProgressCallback<'_>,
     ) -> Result<DocumentRun, ScriptError> {
-        let (mut frames, mut machines) = (Sequence::default(), Machines::default());
+        let (mut frames, mut others, mut machines) = (Sequence::default(), OtherFrames::default(), Machines::default());
         let see = |run: &Run, frame: &Frame| {
             frames.push(*frame);
+            others.push(run);
             machines.set_from(frame.step, &run.scenario().machine);
             !frames.len().is_multiple_of(REPORT_FRAMES) || watch(frames.len() as f64 / (self.end + 1) as f64)
         };
         let end = |run: &Run, _: &[TimedEdit]| Ok(end(run));
         let run = replay::perform(&self.scenario, &self.script.to_vec(), end, patient, known, see)?;
-        Ok(DocumentRun { run, frames, machines })
+        Ok(DocumentRun { run, frames, others, machines })
     }
 
     /// Runs the document after an edit of its start. If the edit has made the planned motion shorter than that of the
@@ -122,7 +126,7 @@ impl Document {
     ) -> Result<DocumentRun, ScriptError> {
         let last_edit = self.script.last().map_or(0, |timed| timed.step);
         let is_planned = !self.script.is_dragged() && known.waiting().is_none();
-        let end = |run: &Run| match is_planned && run.planned_time() < known.planned_time() {
+        let end = |run: &Run| match is_planned && run.whole_time() < known.whole_time() {
             true => self.end.min(last_edit.max(run.planned_steps() as u64)),
             false => self.end,
         };

@@ -22,6 +22,7 @@ use super::document::Document;
 use super::edit::{Edit, TimedEdit};
 use super::events::{EventLog, Gestures};
 use super::machines::Machines;
+use super::other_frames::OtherFrames;
 use super::run::Run;
 use crate::gentle_motion::has_made_task;
 use crate::scenario::{MAX_FRAMES, MAX_TIME, Scenario};
@@ -38,6 +39,7 @@ pub struct Session {
     edits: Sequence<TimedEdit>,
     run: Run,
     frames: Sequence<Frame>,
+    others: OtherFrames,
     machines: Machines,
     cursor: usize,
     playing: bool,
@@ -63,6 +65,11 @@ impl Session {
     /// Returns every frame so far, one for each step.
     pub fn frames(&self) -> &Sequence<Frame> {
         &self.frames
+    }
+
+    /// Returns the frames on display of the other blocks of an assembly, each with the place of its block.
+    pub fn others(&self) -> impl Iterator<Item = (usize, &Frame)> + Clone {
+        self.others.at(self.cursor)
     }
 
     /// Returns the machine at each step.
@@ -123,14 +130,14 @@ impl Session {
     }
 
     fn is_settled(&self) -> bool {
-        self.run.simulation().is_settled()
+        self.run.is_settled()
     }
 
     /// Returns the length of the time line, s: of the planned motion or of the run so far, whichever is longer. For a
     /// dragged machine it is that of the run.
     pub fn length(&self) -> f64 {
         let done = self.run.simulation().time();
-        if self.is_dragged() { done } else { done.max(self.run.planned_time()) }
+        if self.is_dragged() { done } else { done.max(self.run.whole_time()) }
     }
 
     /// Returns the reference b of the frame on display, rad. If this is the newest frame of a dragged machine, returns

@@ -18,6 +18,7 @@ mod gentle_motion;
 mod interactive;
 mod machines;
 mod older;
+mod other_frames;
 pub mod parts;
 mod planner;
 mod proposal;
@@ -46,6 +47,8 @@ pub use gentle_motion::{for_machine, for_template, gentle_motion, gentle_motion_
 pub use interactive::Session;
 #[doc(hidden)]
 pub use machines::Machines;
+#[doc(hidden)]
+pub use other_frames::OtherFrames;
 pub use planner::{Plan, arm_on_base, curves};
 #[doc(hidden)]
 pub use proposal::{

@@ -6,6 +6,7 @@ use super::changes::{ScriptError, fold_start_edits};
 use super::edit::{Edit, TimedEdit};
 use super::planner::{Plan, momentum_model, plan, rays_from};
 use super::refusal::Refusal;
+use crate::assembly::SharedRun;
 use crate::changes::{after_start_edit, changed, checked};
 use crate::scenario::{MAX_STEPS, Scenario, UnfinishedDrawing};
 use stillbase_mechanics::machine::{Chain, Inertia};
@@ -61,6 +62,8 @@ pub struct Run {
     /// Set if the task cannot be planned; the plan is then to stay at rest.
     waiting: Option<WaitReason>,
     simulation: Simulation,
+    /// The other blocks of the assembly of which the machine is one.
+    shared: Option<Box<SharedRun>>,
     /// Cache of queries about the run, which copies share.
     queries: Queries,
 }
@@ -113,8 +116,12 @@ impl Run {
         };
         let guide = plan.guide(&scenario.machine);
         let simulation = Simulation::new(&scenario.setup(), guide)?;
+        let shared = match &scenario.assembly {
+            Some(block) => Some(Box::new(SharedRun::new(block, &simulation.frame(), queries)?)),
+            None => None,
+        };
         let (scenario, plan) = (Arc::new(scenario.clone()), Arc::new(plan));
-        Ok(Self { scenario, space, plan, waiting, simulation, queries: queries.clone() })
+        Ok(Self { scenario, space, plan, waiting, simulation, shared, queries: queries.clone() })
     }
 
     /// Returns the reason why the run waits, if its task does not fit its machine or the drawing is no machine yet.
@@ -207,9 +214,9 @@ impl Run {
         self.plan.motion.duration()
     }
 
-    /// Returns the number of steps of the planned motion, rounded up.
+    /// Returns the number of steps of the planned motion, rounded up; in an assembly, of the block with the longest one.
     pub fn planned_steps(&self) -> f64 {
-        (self.planned_time() / self.scenario.step).ceil()
+        (self.whole_time() / self.scenario.step).ceil()
     }
 
     /// Returns the place of the end effector in a pose, m.
@@ -240,12 +247,34 @@ impl Run {
 
     /// Returns the frame of the present step.
     pub fn frame(&self) -> Frame {
-        self.simulation.frame()
+        let frame = self.simulation.frame();
+        match &self.shared {
+            Some(shared) => Frame { shared: Some(shared.base(&frame)), ..frame },
+            None => frame,
+        }
+    }
+
+    /// Returns the other blocks of the assembly of which the machine is one.
+    pub fn shared(&self) -> Option<&SharedRun> {
+        self.shared.as_deref()
     }
 
     /// Advances by one step.
     pub fn advance(&mut self) {
         self.simulation.advance();
+        if let Some(shared) = &mut self.shared {
+            shared.advance(&self.simulation.frame());
+        }
+    }
+
+    /// Returns the duration of the planned motion, s; in an assembly, that of the block with the longest one.
+    pub fn whole_time(&self) -> f64 {
+        self.planned_time().max(self.shared.as_ref().map_or(0.0, |shared| shared.planned_time()))
+    }
+
+    /// Returns whether everything is at rest, and stays so.
+    pub fn is_settled(&self) -> bool {
+        self.simulation.is_settled() && self.shared.as_ref().is_none_or(|shared| shared.is_settled())
     }
 
     /// Applies an edit at the present step.
@@ -487,7 +516,7 @@ impl Run {
         match self.scenario.duration {
             Some(duration) => (duration / step).round() as u64,
             // Rounded up, so that a motion that ends between two steps is complete.
-            None => (self.planned_time() / step - 1e-6).ceil() as u64,
+            None => (self.whole_time() / step - 1e-6).ceil() as u64,
         }
     }
 
@@ -498,7 +527,7 @@ impl Run {
     pub(super) fn checked_last_step(&self, script: &[TimedEdit]) -> Result<u64, ScriptError> {
         let (last, step) = (self.last_step(), self.scenario.step);
         if last > MAX_STEPS {
-            let time = self.scenario.duration.unwrap_or(self.planned_time());
+            let time = self.scenario.duration.unwrap_or(self.whole_time());
             return Err(Refusal::TooManySteps { time, step, steps: last }.into());
         }
         match script.iter().position(|e| e.step > last) {

@@ -18,7 +18,7 @@ use stillbase_planning::curves::Samples;
 use stillbase_planning::timing::limits::{DriveLimit, DriveLimits, LimitedQuantity};
 use stillbase_settings::number::{ShortNumber, fixed, significant};
 use stillbase_simulation::audit::AuditFigure;
-use stillbase_simulation::frame::{Frame, Peaks, Phase};
+use stillbase_simulation::frame::{Frame, Peaks, Phase, SharedBase};
 use stillbase_simulation::plant::BaseKind;
 
 /// Maximum final distance of the end effector from its target, m, at which the target counts as reached.
@@ -52,6 +52,8 @@ pub struct Verdict {
     pub attitude: Option<Attitude>,
     /// What a reaction wheel had to give; `None` without a wheel.
     pub wheel: Option<WheelUse>,
+    /// The base that the machine shares with other blocks of an assembly, and what all of them did to it.
+    pub shared: Option<SharedBase>,
     /// Whether the arm has moved at all.
     pub moved: bool,
     /// Largest |n_B|, N m.
@@ -153,6 +155,13 @@ fn gives_drives(scenario: &Scenario, frame: &Frame) -> bool {
     of_drives && (frame.target.at - Vector::new(x, y)).norm() <= TARGET_TOLERANCE
 }
 
+/// Returns the peaks of force and moment that all blocks together put on their base.
+pub(crate) fn peaks_of(shared: &SharedBase) -> String {
+    let three =
+        |first: usize| shared.peaks[first..first + 3].iter().map(|x| significant(*x)).collect::<Vec<_>>().join(", ");
+    format!("peak force {} N and moment {} N m of all blocks, along and about x, y, z", three(0), three(3))
+}
+
 /// A remark on a verdict, in a few words and in a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remark {
@@ -168,15 +177,20 @@ impl Verdict {
         let peaks = &frame.peaks;
         let (by, angle) = peaks.past_limit;
         let name = |i: usize| scenario.machine.angles().get(i).map_or_else(String::new, |a| a.name.clone());
+        let is_silent = |shared: SharedBase| shared.silent() == [true; 6];
+        let floating = frame.shared.filter(|shared| shared.floats);
+        let of_shared =
+            floating.map(|SharedBase { turn: [peak, end], shift, .. }| Attitude { peak, end, shift, wanted: None });
         Self {
-            reactionless: peaks.is_reactionless() && frame.first_violation().is_none(),
-            is_base_unloaded: peaks.is_base_unloaded(),
-            attitude: (scenario.base.kind == BaseKind::Free).then_some(Attitude {
+            reactionless: frame.was_reactionless() && frame.first_violation().is_none(),
+            is_base_unloaded: frame.shared.map_or(peaks.is_base_unloaded(), is_silent),
+            attitude: of_shared.or((scenario.base.kind == BaseKind::Free).then_some(Attitude {
                 peak: frame.totals.base_angle,
                 end: frame.base.angle,
                 shift: frame.totals.shift,
                 wanted: (scenario.task.kind == TaskKind::TurnBase).then_some(scenario.task.base_turn.to_radians()),
-            }),
+            })),
+            shared: frame.shared,
             wheel: scenario.base.wheel.map(|wheel| WheelUse {
                 momentum: wheel.inertia * frame.totals.wheel_rate,
                 momentum_limit: wheel.speed_limit.map(|limit| wheel.inertia * limit),
@@ -308,11 +322,16 @@ impl Verdict {
             let [peak, end, shift] = [peak, end, shift].map(significant);
             text += &format!("peak |θ| {peak} rad, {end} rad at the end, shifted by up to {shift} m; ");
         }
-        text += &format!("peak |n_B| {} N m", significant(self.arm_moment));
+        match &self.shared {
+            Some(shared) => text += &peaks_of(shared),
+            None => text += &format!("peak |n_B| {} N m", significant(self.arm_moment)),
+        }
         if let Some(past_wheel) = self.past_wheel {
             text += &format!(", past the wheel {} N m", significant(past_wheel));
         }
-        text += &format!(", peak |f_B| {} N", significant(self.force));
+        if self.shared.is_none() {
+            text += &format!(", peak |f_B| {} N", significant(self.force));
+        }
         if let Some(wheel) = self.wheel {
             text += &format!("; {}", wheel.sentence());
         }

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::audit::AuditFigure;
 use crate::plant::WheelState;
+use nalgebra::Vector3;
+use stillbase_mechanics::assembly::{Attitude, SpatialLoads};
 use stillbase_mechanics::dynamics::BaseWrench;
 use stillbase_mechanics::joint_forces::InternalLoads;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
@@ -90,6 +92,49 @@ pub struct Frame {
     pub totals: Totals,
     /// Figures that should be zero.
     pub audit: Audit,
+    /// The base that the machine shares with others, if it is a block of an assembly.
+    pub shared: Option<SharedBase>,
+}
+
+/// The base that several machines share, in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedBase {
+    /// What all machines put on a base at rest, about its origin.
+    pub loads: SpatialLoads,
+    /// Attitude of the base; level if it is fixed.
+    pub attitude: Attitude,
+    /// Origin of the base in space, m.
+    pub origin: Vector3<f64>,
+    /// Rate of the base in its axes, rad/s.
+    pub rate: Vector3<f64>,
+    /// Whether the base floats.
+    pub floats: bool,
+    /// Peaks so far of the parts of force, N, and moment, N m, from motion.
+    pub peaks: [f64; 6],
+    /// Peak so far of Σ|τ|, N m, and of Σ m |a|, N, of all machines.
+    pub scale: [f64; 2],
+    /// Largest turn of the base so far, and its turn now, rad.
+    pub turn: [f64; 2],
+    /// Largest distance so far of the base from where it was, m.
+    pub shift: f64,
+}
+
+impl SharedBase {
+    /// Returns for each component of force and moment whether its peak so far counts as zero.
+    pub fn silent(&self) -> [bool; 6] {
+        std::array::from_fn(|i| self.peaks[i] <= self.no_load(i))
+    }
+
+    /// Returns whether all six components are zero now.
+    pub fn is_unloaded(&self) -> bool {
+        let now = self.loads.motion.components();
+        now.iter().enumerate().all(|(i, x)| x.abs() <= self.no_load(i).max(1e-15))
+    }
+
+    /// Returns the largest component that counts as zero, N or N m.
+    fn no_load(&self, component: usize) -> f64 {
+        REACTIONLESS_SHARE * self.scale[usize::from(component < 3)]
+    }
 }
 
 /// Phase of a run.
@@ -151,6 +196,11 @@ impl Frame {
         self.q[k] - self.base.angle
     }
 
+    /// Returns whether the base has felt nothing so far: of the machine or, in an assembly, of all blocks together.
+    pub fn was_reactionless(&self) -> bool {
+        self.shared.map_or(self.peaks.is_reactionless(), |shared| shared.silent() == [true; 6])
+    }
+
     /// Returns whether the moment that the base feels is zero now, relative to the run's peaks.
     pub fn turns_no_base(&self) -> bool {
         self.felt_moment.abs() <= self.peaks.no_moment().max(1e-15)
@@ -158,6 +208,9 @@ impl Frame {
 
     /// Returns whether the moment and force that the base feels are zero now, relative to the run's peaks.
     pub fn is_base_unloaded(&self) -> bool {
-        self.turns_no_base() && self.wrench.dynamic.force.norm() <= self.peaks.no_force().max(1e-15)
+        match &self.shared {
+            Some(shared) => shared.is_unloaded(),
+            None => self.turns_no_base() && self.wrench.dynamic.force.norm() <= self.peaks.no_force().max(1e-15),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Table of signals: each is a curve of a plot, a series of the recording and a column of the CSV.
 
-use crate::frame::Frame;
+use crate::frame::{Frame, SharedBase};
 use stillbase_mechanics::joint_forces::{self, Joints, MAX_FRAME_PINS};
 use stillbase_mechanics::machine::{Drive, Inertia, Machine};
 use stillbase_mechanics::planar::MAX_DRIVES;
@@ -30,6 +30,8 @@ pub struct Signal {
 enum Quantity {
     PerIndex(usize, fn(&Frame, usize) -> f64),
     Whole(fn(&Frame) -> f64),
+    /// A number of the base that the blocks of an assembly share; 0 for a machine by itself.
+    OfSharedBase(usize, fn(&SharedBase, usize) -> f64),
 }
 
 /// Compares the paths and the indices of the drive, angle or pin: the same path may mean another drive on another
@@ -38,7 +40,7 @@ impl PartialEq for Signal {
     fn eq(&self, other: &Self) -> bool {
         let place = |signal: &Self| match signal.quantity {
             Quantity::PerIndex(k, _) => Some(k),
-            Quantity::Whole(_) => None,
+            Quantity::Whole(_) | Quantity::OfSharedBase(..) => None,
         };
         self.path == other.path && place(self) == place(other)
     }
@@ -51,7 +53,13 @@ impl Signal {
         match self.quantity {
             Quantity::PerIndex(k, f) => f(frame, k),
             Quantity::Whole(f) => f(frame),
+            Quantity::OfSharedBase(i, f) => frame.shared.as_ref().map_or(0.0, |base| f(base, i)),
         }
+    }
+
+    /// Whether it states what the base does that the blocks of an assembly share.
+    pub fn is_of_shared_base(&self) -> bool {
+        matches!(self.quantity, Quantity::OfSharedBase(..))
     }
 
     /// Whether its values are never negative: a norm, a root mean square, an impulse, an energy, a worst value, 0/1.
@@ -119,12 +127,62 @@ pub fn name_and_unit(head: &str) -> (&str, &str) {
 pub struct SignalsOf;
 
 impl QuickQuery for SignalsOf {
-    type Input = Machine;
+    /// The machine; for a block of an assembly, whether the base that it shares floats.
+    type Input = (Machine, Option<bool>);
     type Answer = Vec<Signal>;
 
-    fn answer(machine: &Machine) -> Vec<Signal> {
-        signals(machine)
+    fn answer((machine, shared): &Self::Input) -> Vec<Signal> {
+        match shared {
+            None => signals(machine),
+            Some(floats) => signals_of_block(machine, *floats),
+        }
     }
+}
+
+/// Groups of signals that state what one machine does to its base. A block of an assembly has those of the base that all
+/// blocks share in their place.
+const OF_ITS_BASE: [&str; 14] = [
+    "moment",
+    "force",
+    "momentum",
+    "angular_momentum",
+    "base",
+    "attitude",
+    "attitude_rate",
+    "base_velocity",
+    "wheel",
+    "wheel_saturated",
+    "impulse",
+    "angular_impulse",
+    "tilt",
+    "payload",
+];
+
+/// Returns every signal of a machine that is a block of an assembly, in a fixed order: its own in its plane, and those of
+/// the base that all blocks share, in space.
+pub fn signals_of_block(machine: &Machine, floats: bool) -> Vec<Signal> {
+    let mut table = signals(machine);
+    table.retain(|signal| !OF_ITS_BASE.contains(&signal.group()));
+    let mut add = |path: String, i: usize, value: fn(&SharedBase, usize) -> f64| {
+        let [symbol, label, unit] = described(&path);
+        let quantity = Quantity::OfSharedBase(i, value);
+        let (symbol, label) = (symbol.into(), label.into());
+        table.push(Signal { path, symbol, label, unit, drive: None, limit: None, quantity });
+    };
+    for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        add(format!("force/dynamic_{axis}"), i, |base, i| base.loads.motion.force[i]);
+        add(format!("moment/dynamic_{axis}"), i, |base, i| base.loads.motion.moment[i]);
+        add(format!("force/static_{axis}"), i, |base, i| base.loads.weight.force[i]);
+        add(format!("moment/static_{axis}"), i, |base, i| base.loads.weight.moment[i]);
+        if floats {
+            add(format!("base/{axis}"), i, |base, i| base.origin[i]);
+            add(format!("attitude_rate/base_{axis}"), i, |base, i| base.rate[i]);
+        }
+    }
+    for (i, part) in ["w", "x", "y", "z"].into_iter().enumerate().filter(|_| floats) {
+        add(format!("attitude/base_{part}"), i, |base, i| base.attitude.components()[i]);
+    }
+    table
 }
 
 /// Returns symbol, label and unit of a signal from the dictionary of results.

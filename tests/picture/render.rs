@@ -5,7 +5,9 @@ use std::sync::Arc;
 use stillbase::picture::render::offscreen::{NoPicture, Picture, surface};
 use stillbase::picture::render::{Quality, Renderer, View};
 use stillbase::picture::scene::palette::{Theme, faded, palette};
-use stillbase::picture::scene::{Area, ItemChanges, Marker, Mesh, MeshSet, Polyline, Rgba, Scene, Solid, mesh};
+use stillbase::picture::scene::{
+    Area, IN_PLACE, ItemChanges, Marker, Mesh, MeshSet, Polyline, Rgba, Scene, Solid, mesh,
+};
 
 use crate::Test;
 use crate::gpu::{fresh, gpu};
@@ -111,6 +113,7 @@ fn nine_link(b: f32) -> Area {
         turn: b / sum,
         at: [0.0; 2],
         z: 0.0,
+        world_from_plane: IN_PLACE,
         colour: WHITE,
         shade: None,
     }

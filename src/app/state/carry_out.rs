@@ -146,6 +146,7 @@ impl AppState {
                 return Ok(done);
             }
             SessionCommand::Step(steps) => self.session.step_by(steps),
+            SessionCommand::Lead(block) => self.lead(block)?,
             SessionCommand::Open(scenario) => {
                 self.open(SessionSource::Scenario(scenario), Opening { plays: true, ..Opening::default() });
             }

@@ -67,6 +67,7 @@ impl AppState {
         let content = viewport::SceneContent {
             session,
             views,
+            blocks: self.blocks.as_ref(),
             exaggeration,
             comparison,
             intro: None,
@@ -75,6 +76,21 @@ impl AppState {
             news: None,
         };
         viewport::still(content, size, &mut self.view_state)
+    }
+
+    /// Returns what a picture of a view alone shows.
+    pub(crate) fn plain_content(&self) -> viewport::SceneContent<'_> {
+        viewport::SceneContent {
+            session: &self.session,
+            views: &self.views,
+            blocks: self.blocks.as_ref(),
+            exaggeration: 1.0,
+            comparison: None,
+            intro: None,
+            other: None,
+            weights: &[],
+            news: None,
+        }
     }
 
     /// Returns the counterweights of the chosen point of the Pareto front, in the design view.

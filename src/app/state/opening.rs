@@ -12,6 +12,7 @@ use stillbase_files::table::{TABLE_ENDINGS, is_table};
 use stillbase_mechanics::machine::Machine;
 use stillbase_query::{Shared, Ticket};
 use stillbase_session::Session;
+use stillbase_session::assembly::AssemblyScenario;
 use stillbase_session::scenario::Scenario;
 
 impl AppState {
@@ -118,6 +119,7 @@ impl AppState {
             given.measured = Shared(Arc::new(self.session.scenario().machine.clone()));
         }
         self.view_state.framing.iter_mut().for_each(Framing::renew);
+        self.show_blocks();
         self.background.free(old, &self.session);
         self.run_ahead();
         // A file that is taken up again stays at its time, as far as its run goes.
@@ -131,6 +133,27 @@ impl AppState {
             self.view_state.open.dialog = None;
         }
         self.show_outcome(Ok(news));
+    }
+
+    /// Leads another block of the assembly: the same motion, and the same instant on display. Ctrl Z leads the one before.
+    pub(super) fn lead(&mut self, block: usize) -> Result<(), String> {
+        let present = self.session.to_scenario();
+        let Some(whole) = AssemblyScenario::of(&present).filter(|whole| whole.lead != block) else { return Ok(()) };
+        let name = &whole.assembly.blocks()[block].name;
+        let scenario = Scenario { duration: whole.duration, ..whole.leading(block) };
+        let mut next = Session::open(scenario).map_err(|refusal| refusal.to_string())?;
+        next.seek(self.session.frame().time);
+        let (old, plays) = (self.session.clone(), self.session.is_playing());
+        self.session.take_over_as(next, format!("lead {name}"));
+        if plays {
+            self.session.play();
+        }
+        self.view_state.measurements.clear();
+        self.view_state.gesture = Default::default();
+        self.saving.changes += 1;
+        self.background.free(old, &self.session);
+        self.run_ahead();
+        Ok(())
     }
 
     /// Opens one of the paper's cases with the machine on display, or the paper's if both have the same name. The

@@ -150,6 +150,7 @@ impl AppState {
         let content = viewport::SceneContent {
             session: &self.session,
             views: &self.views,
+            blocks: self.blocks.as_ref(),
             exaggeration: self.base_exaggeration(),
             comparison: self.comparison.as_ref(),
             intro: self.intro.as_ref().filter(|_| !presents),

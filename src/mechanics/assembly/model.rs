@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use toml::Value;
 
 use super::block::{Block, Mount};
-use super::file::{AssemblySpec, BlockSpec, FindMachine};
+use super::file::{AssemblyKind, AssemblySpec, BlockSpec, FindMachine};
 use crate::machine::{KeyPath, Machine, MachineSpec};
 use crate::planar::MAX_DRIVES;
 use stillbase_settings::range::{MAX_SAID, quote_clipped, shortened};
@@ -101,6 +101,30 @@ impl Assembly {
         let wrong = || AssemblyError { place, said: numbers_wanted(&gravity, "m/s²"), known: Vec::new() };
         self.gravity = vector(&gravity).ok_or_else(wrong)?;
         Ok(())
+    }
+
+    /// Returns the content of its file, with all machines written out.
+    ///
+    /// # Panics
+    /// Never: every machine can be written.
+    pub fn spec(&self) -> AssemblySpec {
+        let name_of = |on: Option<usize>| on.map_or(BASE, |on| &self.blocks[on].name).to_owned();
+        let block = |block: &Block| BlockSpec {
+            name: block.name.clone(),
+            machine: Value::try_from(block.machine.spec()).expect("a machine is plain data"),
+            set: Vec::new(),
+            on: name_of(block.mount.on),
+            at: block.mount.at.into(),
+            x: block.mount.axes.column(0).into_owned().into(),
+            y: block.mount.axes.column(1).into_owned().into(),
+        };
+        AssemblySpec {
+            kind: AssemblyKind::Assembly,
+            name: self.name.clone(),
+            summary: self.summary.clone(),
+            gravity: self.gravity.into(),
+            blocks: self.blocks.iter().map(block).collect(),
+        }
     }
 
     /// Returns whether it is a machine by itself.

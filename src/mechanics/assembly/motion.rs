@@ -192,6 +192,14 @@ impl Assembly {
         self.moving(states).map(|block| block.platform[0])
     }
 
+    /// Returns the mounts of the blocks, m from the origin of the base.
+    ///
+    /// # Panics
+    /// If there are fewer states than blocks.
+    pub fn mounts(&self, states: &[BlockState]) -> [Vector3<f64>; MAX_BLOCKS] {
+        self.moving(states).map(|block| block.mount[0])
+    }
+
     /// Returns what blocks in motion put on a base at rest. Gives `see` the loads of each block, carried ones first.
     ///
     /// # Panics

@@ -9,6 +9,7 @@ use wgpu::util::DeviceExt as _;
 twin! {
     /// Coefficients of an area; `u1` and `u2` are the columns of u.
     struct Area {
+        world_from_plane: [[f32; 4]; 4],
         c: [f32; 3],
         turn: f32,
         u1: [f32; 3],
@@ -78,12 +79,14 @@ impl WorkspaceRenderer {
         self.shader.reload(upload.device);
         self.list.items.clear();
         self.list.items.extend(scene.areas.iter().map(|area| {
-            let &scene::Area { name: _, c, u, v, a_min, a_max, turn, at: [x, y], z, colour, shade } = area;
+            let &scene::Area { name: _, c, u, v, a_min, a_max, turn, at: [x, y], z, world_from_plane, colour, shade } =
+                area;
             let [u1, u2] = [0, 1].map(|i| u.map(|u_k| u_k[i]));
             // Without a shade, both ends of the colour scale are the colour of the area.
             let (shade, [empty, full], measure) =
                 shade.map_or((colour, [0.0, 1.0], 0), |s| (s.colour, [s.empty, s.full], s.measure as u32));
-            Area { c, turn, u1, z, u2, x, v, y, a_min, a_max, colour, shade, full, empty, measure, ..Area::zeroed() }
+            let spread = Area { c, turn, u1, z, u2, x, v, y, a_min, a_max, ..Area::zeroed() };
+            Area { world_from_plane, colour, shade, full, empty, measure, ..spread }
         }));
         self.list.upload(kit, upload);
     }

@@ -12,7 +12,14 @@ pub enum Camera {
     Flat(FlatCamera),
     /// In perspective, orbiting a point.
     Orbit(Orbit),
+    /// In perspective, for points in axes other than those of the world.
+    #[serde(skip)]
+    OfBlock(Orbit, BlockPlace),
 }
+
+/// Transformation from the axes of a block to the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlockPlace(pub Matrix4<f64>);
 
 /// Orthographic camera that looks straight down on the plane of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,6 +78,15 @@ impl Camera {
         Self::Orbit(Orbit { centre: [0.1 * reach, 0.2 * reach, 0.0], distance: 2.3 * reach, yaw: 0.45, pitch: 0.75 })
     }
 
+    /// Returns the camera for points in the axes of a block: it projects them, and gives lines of sight, in these axes.
+    #[must_use]
+    pub fn of_block(self, world_from_block: Matrix4<f64>) -> Self {
+        match self {
+            Self::Flat(_) => self,
+            Self::Orbit(orbit) | Self::OfBlock(orbit, _) => Self::OfBlock(orbit, BlockPlace(world_from_block)),
+        }
+    }
+
     /// Whether the camera is orthographic from above.
     pub fn is_flat(&self) -> bool {
         matches!(self, Self::Flat(_))
@@ -82,13 +98,16 @@ impl Camera {
         let near = |x: &f64| x.abs() <= MAX_SIZE_M;
         match self {
             Self::Flat(f) => f.centre.iter().all(near) && sizes.contains(&f.half_height),
-            Self::Orbit(o) => o.centre.iter().chain([&o.yaw, &o.pitch]).all(near) && sizes.contains(&o.distance),
+            Self::Orbit(o) | Self::OfBlock(o, _) => {
+                o.centre.iter().chain([&o.yaw, &o.pitch]).all(near) && sizes.contains(&o.distance)
+            }
         }
     }
 
     fn view(&self) -> Matrix4<f64> {
         match self {
             Self::Flat(f) => Matrix4::new_translation(&Vector3::new(-f.centre[0], -f.centre[1], 0.0)),
+            Self::OfBlock(o, place) => Self::Orbit(*o).view() * place.0,
             Self::Orbit(o) => {
                 let back = o.back();
                 let centre = Point3::from(o.centre);
@@ -110,7 +129,7 @@ impl Camera {
                 let (h, w) = (f.half_height, f.half_height * aspect);
                 Matrix4::new_orthographic(-w, w, -h, h, -10.0 * h, 10.0 * h)
             }
-            Self::Orbit(o) => {
+            Self::Orbit(o) | Self::OfBlock(o, _) => {
                 let field = 2.0 * ((0.5 * FIELD_OF_VIEW_RAD).tan() / aspect.min(1.0)).atan();
                 Matrix4::new_perspective(aspect, field, 0.02 * o.distance, 20.0 * o.distance)
             }
@@ -127,6 +146,7 @@ impl Camera {
         match self {
             Self::Flat(_) => [0.0, 0.0, 1.0],
             Self::Orbit(o) => o.back().map(|x| x as f32).into(),
+            Self::OfBlock(o, place) => place.0.transpose().transform_vector(&o.back()).map(|x| x as f32).into(),
         }
     }
 
@@ -152,13 +172,15 @@ impl Camera {
     pub fn scale(&self, aspect: f64) -> f64 {
         match self {
             Self::Flat(f) => 0.5 / f.half_height,
-            Self::Orbit(o) => 0.5 * valid_aspect(aspect).min(1.0) / (o.distance * (0.5 * FIELD_OF_VIEW_RAD).tan()),
+            Self::Orbit(o) | Self::OfBlock(o, _) => {
+                0.5 * valid_aspect(aspect).min(1.0) / (o.distance * (0.5 * FIELD_OF_VIEW_RAD).tan())
+            }
         }
     }
 
     /// Rotates about the centre by angles, rad; has no effect on a flat view.
     pub fn turn(&mut self, yaw: f64, pitch: f64) {
-        if let Self::Orbit(o) = self {
+        if let Self::Orbit(o) | Self::OfBlock(o, _) = self {
             o.yaw = (o.yaw + yaw).rem_euclid(std::f64::consts::TAU);
             o.pitch = (o.pitch + pitch).clamp(-1.55, 1.55);
         }
@@ -172,7 +194,7 @@ impl Camera {
                 f.centre[0] -= right * metres;
                 f.centre[1] += down * metres;
             }
-            Self::Orbit(o) => {
+            Self::Orbit(o) | Self::OfBlock(o, _) => {
                 let view = Self::Orbit(*o).view();
                 for i in 0..3 {
                     o.centre[i] += (-right * view[(0, i)] + down * view[(1, i)]) * metres;
@@ -187,7 +209,7 @@ impl Camera {
         self.pan(-x, -y, aspect);
         match self {
             Self::Flat(f) => f.half_height = (f.half_height / factor).clamp(1e-3, 1e3),
-            Self::Orbit(o) => o.distance = (o.distance / factor).clamp(1e-2, 1e3),
+            Self::Orbit(o) | Self::OfBlock(o, _) => o.distance = (o.distance / factor).clamp(1e-2, 1e3),
         }
         self.pan(x, y, aspect);
     }

@@ -13,6 +13,8 @@ pub mod arrow;
 #[doc(hidden)]
 pub mod axes;
 pub mod beside;
+#[doc(hidden)]
+pub mod blocks;
 pub mod camera;
 #[doc(hidden)]
 pub mod course;
@@ -240,6 +242,8 @@ pub struct Area {
     pub at: [f32; 2],
     /// Height of its plane, m.
     pub z: f32,
+    /// World_from_plane, column-major: the plane of the machine is that of the world unless it is a block in space.
+    pub world_from_plane: Transform,
     /// Colour of one sheet; overlapping sheets blend to a stronger colour.
     pub colour: Rgba,
     /// Colour scale for a measure of dexterity.
@@ -250,7 +254,8 @@ impl Area {
     /// Returns the pose in which Eq. (16) with `turn` = 0 and B = 0 gives the area.
     pub fn world_from_item(&self) -> Transform {
         let [x, y] = self.at;
-        posed_at([self.turn.cos(), self.turn.sin()], [x, y, self.z])
+        let in_plane = posed_at([self.turn.cos(), self.turn.sin()], [x, y, self.z]);
+        (nalgebra::Matrix4::from(self.world_from_plane) * nalgebra::Matrix4::from(in_plane)).into()
     }
 }
 

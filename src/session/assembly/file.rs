@@ -6,8 +6,9 @@ use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use crate::gentle_motion::gentle_motion;
 use crate::scenario::{Scenario, ScenarioError};
-use stillbase_mechanics::assembly::{Assembly, SpatialBase};
+use stillbase_mechanics::assembly::{Assembly, SpatialBase, builtin_assemblies};
 use stillbase_mechanics::machine::{KeyPath, Machine, Payload};
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::range::{MAX_SAID, quote_clipped, shortened};
@@ -15,12 +16,14 @@ use stillbase_settings::stated::StatedFile;
 use stillbase_settings::text::plain;
 
 /// A scenario of an assembly.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyScenario {
     /// Its name.
     pub name: String,
     /// Its title.
     pub title: String,
+    /// Description in one sentence.
+    pub summary: String,
     /// The assembly.
     pub assembly: Assembly,
     /// What each block does, in the order of the blocks.
@@ -31,15 +34,17 @@ pub struct AssemblyScenario {
     pub step: f64,
     /// Duration, s; `None` for the longest task.
     pub duration: Option<f64>,
+    /// The block that the window leads first.
+    pub lead: usize,
 }
 
 /// What a block does.
-#[derive(Clone, Debug)]
-pub enum BlockTask {
-    /// The task of a machine by itself, which holds what the block carries.
-    Moves(Box<Scenario>),
-    /// It rests at these angles, rad.
-    Rests(Vec<f64>),
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockTask {
+    /// The scenario of its machine by itself, which holds what the block carries.
+    pub scenario: Scenario,
+    /// Whether the file states no task: the block rests in the pose of its machine.
+    pub rests: bool,
 }
 
 /// The base of an assembly.
@@ -57,12 +62,16 @@ struct File {
     name: Option<String>,
     #[serde(default)]
     title: String,
-    #[serde(default, rename = "summary")]
-    _summary: String,
+    #[serde(default)]
+    summary: String,
     #[serde(rename = "machine")]
-    _machine: String,
+    _machine: Value,
+    lead: Option<String>,
     #[serde(default)]
     task: BTreeMap<String, Table>,
+    /// Other settings of the scenarios of blocks, and their edits.
+    #[serde(default)]
+    scenario: BTreeMap<String, Table>,
     #[serde(default)]
     base: BaseInFile,
     step: Option<f64>,
@@ -138,34 +147,38 @@ impl Reading<'_> {
         let step = within("step", file.step, STEP)?;
         let duration = within("duration", file.duration, DURATION)?;
         let names: Vec<&str> = assembly.blocks().iter().map(|block| block.name.as_str()).collect();
-        if let Some(other) = file.task.keys().find(|key| !names.contains(&key.as_str())) {
-            let said = format!(
-                "no block {:?}: want a block of the assembly, one of {}",
-                quote_clipped(other),
-                names.join(", ")
-            );
-            return Err(self.wrong(&["task", other], said));
+        let unknown = |name: &str| {
+            format!("no block {:?}: want a block of the assembly, one of {}", quote_clipped(name), names.join(", "))
+        };
+        for (key, of) in [("task", &file.task), ("scenario", &file.scenario)] {
+            if let Some(other) = of.keys().find(|key| !names.contains(&key.as_str())) {
+                return Err(self.wrong(&[key, other], unknown(other)));
+            }
         }
+        let lead = match &file.lead {
+            Some(name) => {
+                names.iter().position(|own| own == name).ok_or_else(|| self.wrong(&["lead"], unknown(name)))?
+            }
+            None => 0,
+        };
+        let step = step.unwrap_or(USUAL_STEP);
         let mut tasks = Vec::with_capacity(names.len());
         for (i, block) in assembly.blocks().iter().enumerate() {
-            tasks.push(match file.task.get(&block.name) {
-                Some(task) => BlockTask::Moves(Box::new(self.task(&assembly, i, task)?)),
-                None => match &block.machine.spec().pose {
-                    Some(pose) => BlockTask::Rests(pose.clone()),
-                    None => {
-                        let said = format!(
-                            "block {} has no task, and its machine no pose to rest in: want [task.{}]",
-                            block.name, block.name
-                        );
-                        return Err(self.wrong(&["task"], said));
-                    }
-                },
-            });
+            let (stated, other) = (file.task.get(&block.name), file.scenario.get(&block.name));
+            let task = match (stated, &block.machine.spec().pose) {
+                (Some(task), _) => task.clone(),
+                (None, Some(pose)) => resting(pose),
+                (None, None) => {
+                    let said = format!(
+                        "block {} has no task, and its machine no pose to rest in: want [task.{}]",
+                        block.name, block.name
+                    );
+                    return Err(self.wrong(&["task"], said));
+                }
+            };
+            let scenario = self.of_block(&assembly, i, (task, other), step)?;
+            tasks.push(BlockTask { rests: stated.is_none() && scenario.edits.is_empty(), scenario });
         }
-        let usual = tasks.iter().find_map(|task| match task {
-            BlockTask::Moves(scenario) => Some(scenario.step),
-            BlockTask::Rests(_) => None,
-        });
         let stem =
             std::path::Path::new(self.label).file_stem().map_or_else(|| self.label.into(), |s| s.to_string_lossy());
         let base = self.base(&file.base)?;
@@ -177,11 +190,13 @@ impl Reading<'_> {
         Ok(AssemblyScenario {
             name: file.name.unwrap_or_else(|| plain(&stem).into_owned()),
             title: file.title,
+            summary: file.summary,
             assembly,
             tasks,
             base,
-            step: step.or(usual).unwrap_or(1e-3),
+            step,
             duration,
+            lead,
         })
     }
 
@@ -223,16 +238,27 @@ impl Reading<'_> {
         Ok(AssemblyBase::Free(SpatialBase { mass, com: base.com.into(), inertia }))
     }
 
-    /// Returns the task of a block as a scenario of its machine, with what it carries as payload.
-    fn task(&self, assembly: &Assembly, i: usize, task: &Table) -> Result<Scenario, ScenarioError> {
+    /// Returns the task of a block, and its other settings, as a scenario of its machine with what it carries as payload.
+    fn of_block(
+        &self,
+        assembly: &Assembly,
+        i: usize,
+        (task, other): (Table, Option<&Table>),
+        step: f64,
+    ) -> Result<Scenario, ScenarioError> {
         let block = &assembly.blocks()[i];
         let machine = holding(assembly, i).map_err(|why| self.wrong(&["task", &block.name], why))?;
-        let mut text = Table::new();
+        let mut text = other.cloned().unwrap_or_default();
+        if let Some(key) = text.keys().find(|key| !BLOCK_KEYS.contains(&key.as_str())) {
+            let said = format!("is no setting of a block: want one of {}", BLOCK_KEYS.join(", "));
+            return Err(self.wrong(&["scenario", &block.name, key], said));
+        }
+        text.insert("step".into(), Value::Float(step));
         let spec =
             Value::try_from(machine.spec()).map_err(|why| self.wrong(&["task", &block.name], why.to_string()))?;
         text.insert("name".into(), Value::String(block.name.clone()));
         text.insert("machine".into(), spec);
-        text.insert("task".into(), Value::Table(task.clone()));
+        text.insert("task".into(), Value::Table(task));
         Scenario::parse(&text.to_string(), self.label, None).map_err(|error| {
             let ScenarioError::Faulty { faults, .. } = error else {
                 return self.wrong(&["task", &block.name], error.to_string());
@@ -244,8 +270,10 @@ impl Reading<'_> {
 
     /// Gives a fault of a block's task its place in this file.
     fn placed(&self, block: &str, fault: Fault) -> Fault {
+        let first = fault.key.split(['.', '[']).next().unwrap_or_default();
         let key = match fault.key.strip_prefix("task") {
             Some(rest) => format!("task.{block}{rest}"),
+            None if BLOCK_KEYS.contains(&first) => format!("scenario.{block}.{}", fault.key),
             None => format!("task.{block}"),
         };
         let path = KeyPath::of_key(&key);
@@ -266,7 +294,73 @@ fn holding(assembly: &Assembly, i: usize) -> Result<Machine, String> {
     Machine::new(spec).map_err(|why| why.to_string())
 }
 
+/// Keys of a scenario that a block may state for itself, beside its task.
+const BLOCK_KEYS: [&str; 7] = ["control", "compare_b", "pose_acceleration", "edit", "bookmark", "note", "branch"];
+
+/// Step where none is stated, s.
+const USUAL_STEP: f64 = 1e-3;
+
+/// Number and distance, s, of the samples of a block at rest.
+const REST_SAMPLES: u32 = 7;
+const REST_INTERVAL_S: f64 = 0.01;
+
+/// Returns the task of a block that rests in a pose, rad.
+fn resting(pose: &[f64]) -> Table {
+    let row = |i: u32| {
+        let time = f64::from(i) * REST_INTERVAL_S;
+        Value::Array([time].iter().chain(pose).map(|x| Value::Float(*x)).collect())
+    };
+    let samples = Value::Array((0..REST_SAMPLES).map(row).collect());
+    Table::from_iter([("kind".into(), Value::String("given".into())), ("samples".into(), samples)])
+}
+
 impl AssemblyScenario {
+    /// Returns the scenario as TOML, from which [`parse`](Self::parse) gives an equal one. A built-in assembly is named,
+    /// any other is written out.
+    ///
+    /// # Panics
+    /// Never: every scenario can be written.
+    pub fn to_toml(&self) -> String {
+        let known = builtin_assemblies().iter().any(|own| *own == self.assembly);
+        let machine = match known {
+            true => Value::String(self.assembly.name.clone()),
+            false => Value::try_from(self.assembly.spec()).expect("an assembly is plain data"),
+        };
+        let mut file = Table::new();
+        for (key, text) in [("name", &self.name), ("title", &self.title), ("summary", &self.summary)] {
+            file.insert(key.into(), Value::String(text.clone()));
+        }
+        file.insert("machine".into(), machine);
+        file.insert("lead".into(), Value::String(self.assembly.blocks()[self.lead].name.clone()));
+        file.insert("step".into(), Value::Float(self.step));
+        file.extend(self.duration.map(|duration| ("duration".to_owned(), Value::Float(duration))));
+        if let AssemblyBase::Free(SpatialBase { mass, com, inertia }) = &self.base {
+            let rows = inertia.transpose();
+            let list = |numbers: &[f64]| Value::Array(numbers.iter().map(|x| Value::Float(*x)).collect());
+            let base = [
+                ("kind", Value::String("free".into())),
+                ("mass", Value::Float(*mass)),
+                ("com", list(com.as_slice())),
+                ("inertia", list(rows.as_slice())),
+            ];
+            file.insert(
+                "base".into(),
+                Value::Table(base.map(|(key, value)| (key.to_owned(), value)).into_iter().collect()),
+            );
+        }
+        let (mut tasks, mut others) = (Table::new(), Table::new());
+        for (block, task) in self.assembly.blocks().iter().zip(&self.tasks) {
+            let mut own: Table = task.scenario.to_toml().parse().expect("a scenario is written as TOML");
+            let stated = own.remove("task").filter(|_| !task.rests);
+            tasks.extend(stated.map(|stated| (block.name.clone(), stated)));
+            own.retain(|key, _| BLOCK_KEYS.contains(&key));
+            others.insert(block.name.clone(), Value::Table(own));
+        }
+        file.insert("task".into(), Value::Table(tasks));
+        file.insert("scenario".into(), Value::Table(others));
+        toml::to_string(&file).expect("a table is plain data")
+    }
+
     /// Reads a scenario of an assembly from text; errors name `label`.
     ///
     /// # Errors
@@ -279,6 +373,23 @@ impl AssemblyScenario {
                 Err(ScenarioError::Syntax { file: label.into(), line: None, message: shortened(message, MAX_SAID) })
             }
         }
+    }
+
+    /// Returns a scenario in which each block does a small motion of its own.
+    ///
+    /// # Errors
+    /// If no task can be stated for the machine of a block.
+    pub fn for_assembly(assembly: Assembly) -> Result<Self, ScenarioError> {
+        let mut tasks = Vec::with_capacity(assembly.blocks().len());
+        for (i, block) in assembly.blocks().iter().enumerate() {
+            let wrong = |message| ScenarioError::Syntax { file: block.name.clone(), line: None, message };
+            let made = gentle_motion(&holding(&assembly, i).map_err(wrong)?)?;
+            let scenario = Scenario { name: block.name.clone(), title: String::new(), step: USUAL_STEP, ..made };
+            tasks.push(BlockTask { scenario, rests: false });
+        }
+        let (name, summary) = (assembly.name.clone(), assembly.summary.clone());
+        let (title, base, step) = (name.clone(), AssemblyBase::Fixed, USUAL_STEP);
+        Ok(Self { name, title, summary, assembly, tasks, base, step, duration: None, lead: 0 })
     }
 
     /// Returns whether it has no more steps than are simulated, for a duration, s.

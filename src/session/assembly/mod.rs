@@ -4,12 +4,16 @@
 //! of one machine. The blocks then follow their references without error; what they put on the base together is computed in
 //! space. Friction, feedback and payloads unknown to the model are left to scenarios of one machine.
 
+mod block;
 mod catalog;
 mod file;
 mod run;
+mod shared;
 mod signals;
 
+pub use block::AssemblyBlock;
 pub use catalog::{builtin_assembly_scenarios, builtin_scenario_text};
 pub use file::{AssemblyBase, AssemblyScenario, BlockTask};
 pub use run::{AssemblyFrame, AssemblyRun, AssemblyVerdict};
+pub use shared::SharedRun;
 pub use signals::{AssemblySignal, assembly_signals};

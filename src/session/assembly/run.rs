@@ -5,10 +5,13 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::file::{AssemblyBase, AssemblyScenario, BlockTask};
-use crate::{Refusal, Run};
+use super::shared::{between, state_of};
+use crate::{Refusal, Run, replay};
 use stillbase_mechanics::assembly::{Assembly, Attitude, BlockState, MAX_BLOCKS, SpatialLoads};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::{Motion, Reference};
+use stillbase_settings::number::fixed_or_finer;
+use stillbase_simulation::control::Control;
 
 /// A reaction below this share of the sum of all torques is none.
 const SILENT: f64 = 1e-6;
@@ -16,15 +19,48 @@ const SILENT: f64 = 1e-6;
 /// How a block moves.
 #[derive(Clone, Debug)]
 enum BlockMotion {
-    Moves(Arc<Motion>),
+    /// As planned.
+    Planned(Arc<Motion>),
+    /// As simulated, with edits and control: the states at the steps of this size, s.
+    Simulated(f64, Arc<[BlockState]>),
+    /// At rest.
     Rests(DriveAngles),
 }
 
 impl BlockMotion {
+    fn of(task: &BlockTask) -> Result<Self, Refusal> {
+        let scenario = &task.scenario;
+        if task.rests {
+            let run = Run::new(scenario)?;
+            return Ok(Self::Rests(run.plan().motion.at(0.0).q));
+        }
+        if scenario.edits.is_empty() && scenario.control == Control::default() {
+            return Ok(Self::Planned(Run::new(scenario)?.plan().motion.clone()));
+        }
+        let mut states = Vec::new();
+        replay(scenario, |_, frame| states.push(state_of(frame)))?;
+        Ok(Self::Simulated(scenario.step, states.into()))
+    }
+
+    /// Duration, s.
+    fn duration(&self) -> f64 {
+        match self {
+            Self::Planned(motion) => motion.duration(),
+            Self::Simulated(step, states) => (states.len() - 1) as f64 * step,
+            Self::Rests(_) => 0.0,
+        }
+    }
+
     fn at(&self, t: f64) -> BlockState {
         let Reference { q, qd, qdd } = match self {
-            Self::Moves(motion) => motion.at(t),
+            Self::Planned(motion) => motion.at(t),
             Self::Rests(q) => Reference::at_rest(*q),
+            Self::Simulated(step, states) => {
+                let place = (t / step).max(0.0);
+                let i = (place.floor() as usize).min(states.len() - 1);
+                let Some(next) = states.get(i + 1) else { return states[i] };
+                return between(&states[i], next, *step, place - i as f64);
+            }
         };
         BlockState { q, qd, qdd }
     }
@@ -75,16 +111,36 @@ pub struct AssemblyVerdict {
 }
 
 impl AssemblyVerdict {
+    /// Names of the components of force and moment.
+    pub const COMPONENTS: [&str; 6] = ["f_x", "f_y", "f_z", "n_x", "n_y", "n_z"];
+
+    /// Returns the result in a sentence: what reaches a fixed base, or how a free one turns.
+    pub fn sentence(&self, is_fixed: bool) -> String {
+        if !is_fixed {
+            let [most, end] = self.turn.map(|turn| fixed_or_finer(turn, 6));
+            return format!("the base turns by up to {most} rad, and by {end} rad at the end");
+        }
+        let all = Self::COMPONENTS.iter().zip(self.peaks).zip(self.silent());
+        let loud = all.filter(|(_, silent)| !silent).map(|((name, peak), _)| {
+            let unit = if name.starts_with('f') { "N" } else { "N m" };
+            format!("{name} up to {} {unit}", fixed_or_finer(peak, 6))
+        });
+        match loud.collect::<Vec<_>>()[..] {
+            [] => "silent: nothing reaches the base in any of six components".to_owned(),
+            ref loud => format!("reacts: {}", loud.join(", ")),
+        }
+    }
+
     /// Returns whether each of the six components is silent.
     pub fn silent(&self) -> [bool; 6] {
         std::array::from_fn(|i| self.peaks[i] <= SILENT * self.scale[usize::from(i < 3)])
     }
 
-    fn see(&mut self, run: &AssemblyRun, frame: &AssemblyFrame) {
+    pub(super) fn see(&mut self, assembly: &Assembly, frame: &AssemblyFrame) {
         let six = frame.loads.motion.components();
         self.peaks.iter_mut().zip(six).for_each(|(most, x)| *most = most.max(x.abs()));
         let torque: f64 = frame.torques.iter().flat_map(|torque| torque.iter()).map(|x| x.abs()).sum();
-        let forces = run.scenario.assembly.inertial_forces(&frame.states);
+        let forces = assembly.inertial_forces(&frame.states);
         self.scale = [self.scale[0].max(torque), self.scale[1].max(forces)];
         let turn = frame.attitude.0.angle();
         self.turn = [self.turn[0].max(turn), turn];
@@ -100,18 +156,9 @@ impl AssemblyRun {
     pub fn new(scenario: &AssemblyScenario) -> Result<Self, (usize, Refusal)> {
         let mut motions = Vec::with_capacity(scenario.tasks.len());
         for (i, task) in scenario.tasks.iter().enumerate() {
-            motions.push(match task {
-                BlockTask::Moves(task) => {
-                    let run = Run::new(task).map_err(|why| (i, why))?;
-                    BlockMotion::Moves(run.plan().motion.clone())
-                }
-                BlockTask::Rests(pose) => BlockMotion::Rests(DriveAngles(PerDrive::from_fn(pose.len(), |k| pose[k]))),
-            });
+            motions.push(BlockMotion::of(task).map_err(|why| (i, why))?);
         }
-        let longest = motions.iter().map(|motion| match motion {
-            BlockMotion::Moves(motion) => motion.duration(),
-            BlockMotion::Rests(_) => 0.0,
-        });
+        let longest = motions.iter().map(BlockMotion::duration);
         let duration = scenario.duration.unwrap_or_else(|| longest.fold(0.0, f64::max));
         Ok(Self { scenario: scenario.clone(), motions, duration })
     }
@@ -153,7 +200,7 @@ impl AssemblyRun {
             let time = (i as f64 * step).min(self.duration);
             let (rate, com) = moving(time).map_or((rest, rest), |motion| (motion.rate, motion.com));
             let frame = self.frame(assembly, i, time, (attitude, first - attitude.0 * com, rate));
-            verdict.see(self, &frame);
+            verdict.see(assembly, &frame);
             if !see(&frame) {
                 break;
             }
@@ -172,15 +219,25 @@ impl AssemblyRun {
         time: f64,
         (attitude, origin, rate): (Attitude, Vector3<f64>, Vector3<f64>),
     ) -> AssemblyFrame {
-        let states = self.states(time);
-        let mut torques = [PerDrive::zeros(0); MAX_BLOCKS];
-        let loads = assembly.loads(&states, |i, of| torques[i] = of.torque);
-        let tips = assembly.end_effectors(&states);
-        AssemblyFrame { step, time, torques, tips, loads, states, attitude, origin, rate }
+        AssemblyFrame::of(assembly, (step, time), self.states(time), (attitude, origin, rate))
     }
 }
 
 impl AssemblyFrame {
+    /// Returns the frame of a step and a time, s, with the states of all blocks, and the attitude, the origin, m, and the
+    /// rate, rad/s, of the base.
+    pub(super) fn of(
+        assembly: &Assembly,
+        (step, time): (u64, f64),
+        states: [BlockState; MAX_BLOCKS],
+        (attitude, origin, rate): (Attitude, Vector3<f64>, Vector3<f64>),
+    ) -> Self {
+        let mut torques = [PerDrive::zeros(0); MAX_BLOCKS];
+        let loads = assembly.loads(&states, |i, of| torques[i] = of.torque);
+        let tips = assembly.end_effectors(&states);
+        Self { step, time, torques, tips, loads, states, attitude, origin, rate }
+    }
+
     /// Returns a point of the base in space, m.
     pub fn in_space(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.origin + self.attitude.0 * point

@@ -102,7 +102,7 @@ impl Session {
         self.edits.push(timed.clone());
         document.script.push(timed.clone());
         if let Some(remade) = remade {
-            (self.frames, self.machines) = (remade.frames, remade.machines);
+            (self.frames, self.others, self.machines) = (remade.frames, remade.others, remade.machines);
         }
         (self.document, self.run, self.unedited, self.branch_events) = (document, run, Some(unedited), branch_events);
         self.show_present();
@@ -188,11 +188,11 @@ impl Session {
         Ok(())
     }
 
-    fn show_remade(&mut self, document: Document, DocumentRun { run, frames, machines }: DocumentRun) {
+    fn show_remade(&mut self, document: Document, DocumentRun { run, frames, others, machines }: DocumentRun) {
         self.playing &= run.waiting().is_none();
         self.edits = document.script.to_vec().into_iter().collect();
         (self.document, self.run, self.unedited) = (document, run, None);
-        (self.frames, self.machines) = (frames, machines);
+        (self.frames, self.others, self.machines) = (frames, others, machines);
         self.cursor = self.cursor.min(self.frames.len() - 1);
     }
 }

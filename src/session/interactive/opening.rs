@@ -81,13 +81,14 @@ impl Session {
     }
 
     fn of(document: Document, patient: bool, watch: ProgressCallback<'_>) -> Result<Self, ScriptError> {
-        let DocumentRun { run, frames, machines } = document.perform(None, patient, watch)?;
+        let DocumentRun { run, frames, others, machines } = document.perform(None, patient, watch)?;
         let cursor = frames.len() - 1;
         Ok(Self {
             edits: document.script.to_vec().into_iter().collect(),
             document,
             run,
             frames,
+            others,
             machines,
             cursor,
             playing: false,

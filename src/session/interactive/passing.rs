@@ -45,7 +45,7 @@ impl Session {
             return 0;
         }
         let step = self.scenario().step;
-        let planned = (self.run.planned_time() / step - 1e-6).ceil() as usize;
+        let planned = (self.run.whole_time() / step - 1e-6).ceil() as usize;
         let to = (time / step).round().max(0.0) as usize;
         (to.min(planned) + 1).saturating_sub(self.frames.len())
     }
@@ -86,6 +86,7 @@ impl Session {
         self.run.advance();
         let frame = self.run.frame();
         self.frames.push(frame);
+        self.others.push(&self.run);
         // A session can be opened again only up to its last finite frame.
         if frame.is_finite() {
             self.document.end = frame.step;

@@ -1,5 +1,7 @@
 //! [`Scenario`]: machine, task and all settings from which a run starts.
 
+use std::sync::Arc;
+
 use super::design::DesignBrief;
 use super::error::ScenarioError;
 use super::kept::{Bookmark, Branch};
@@ -7,6 +9,7 @@ use super::note::Note;
 use super::task::Task;
 use super::tolerance::Tolerance;
 use crate::TimedEdit;
+use crate::assembly::AssemblyBlock;
 use stillbase_mechanics::machine::{Machine, MachineError};
 use stillbase_mechanics::sketch::Sketch;
 use stillbase_settings::range::RangeCheck;
@@ -55,6 +58,8 @@ pub struct Scenario {
     pub notes: Vec<Note>,
     /// Courses of the run that other edits have replaced.
     pub branches: Vec<Branch>,
+    /// The assembly of which the machine is a block; `None` for a machine by itself.
+    pub assembly: Option<Arc<AssemblyBlock>>,
 }
 
 impl Scenario {
@@ -82,7 +87,7 @@ impl Scenario {
     /// Returns the scenario without edits, bookmarks, notes and branches.
     pub fn without_edits(&self) -> Self {
         let Self { name, title, summary, machine, plant, base, task, control, step, .. } = self;
-        let Self { pose_acceleration, compare_b, duration, tolerance, design, sketch, .. } = self;
+        let Self { pose_acceleration, compare_b, duration, tolerance, design, sketch, assembly, .. } = self;
         Self {
             name: name.clone(),
             title: title.clone(),
@@ -103,13 +108,15 @@ impl Scenario {
             bookmarks: Vec::new(),
             notes: Vec::new(),
             branches: Vec::new(),
+            assembly: assembly.clone(),
         }
     }
 
     /// Returns the scenario without edits on another machine. A start that the task states brings A and b of that machine.
     #[must_use]
     pub fn on_machine(&self, machine: &Machine) -> Self {
-        let mut other = Self { machine: machine.clone(), sketch: None, compare_b: None, ..self.without_edits() };
+        let mut other =
+            Self { machine: machine.clone(), sketch: None, compare_b: None, assembly: None, ..self.without_edits() };
         if let Some(task) = other.task.at_its_start(machine) {
             other.task = task;
         }

@@ -14,6 +14,7 @@ use super::own::ScenarioSettings;
 use super::task::{IncompleteTask, Task};
 use super::tolerance::Tolerance;
 use super::words::ScenarioWords;
+use crate::assembly::AssemblyScenario;
 use crate::{TimedEdit, check_edits};
 use stillbase_mechanics::machine::{self, FileError, KeyPath, KeyStep, Machine, MachineError, MachineSpec};
 use stillbase_mechanics::sketch::{Sketch, SketchRefusal};
@@ -308,6 +309,7 @@ impl Reading<'_> {
             bookmarks: file.bookmarks,
             notes: Vec::new(),
             branches: Vec::new(),
+            assembly: None,
         };
         scenario.check(label).map_err(|error| self.placed(error))?;
         check_edits(&scenario).map_err(wrong_edit)?;
@@ -391,6 +393,9 @@ impl Scenario {
     /// # Panics
     /// Never: every scenario can be written.
     pub fn to_toml(&self) -> String {
+        if let Some(whole) = AssemblyScenario::of(self) {
+            return whole.to_toml();
+        }
         let machine = match machine::builtin(self.machine.name()) {
             Some(known) if *known == self.machine => MachineRef::Name(self.machine.name().into()),
             _ => MachineRef::Inline(Box::new(self.machine.spec().clone())),
@@ -415,6 +420,7 @@ impl Scenario {
             bookmarks,
             notes,
             branches,
+            assembly: _,
         } = self.clone();
         let file = File {
             name: Some(name),

@@ -18,7 +18,7 @@ mod moving;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Attitude, Verdict};
+use super::{Attitude, Verdict, peaks_of};
 use crate::Run;
 use crate::scenario::{TaskKind, UnfinishedDrawing};
 use stillbase_mechanics::machine::Inertia;
@@ -225,8 +225,14 @@ impl Statement {
                 "the arm has not moved, so there is nothing to say of what it transmits",
             );
         }
-        let figures =
-            format!("peak |n_B| {} N m, peak |f_B| {} N", significant(verdict.arm_moment), significant(verdict.force));
+        let figures = match &verdict.shared {
+            Some(shared) => peaks_of(shared),
+            None => format!(
+                "peak |n_B| {} N m, peak |f_B| {} N",
+                significant(verdict.arm_moment),
+                significant(verdict.force)
+            ),
+        };
         if verdict.reactionless {
             return Self::new(StatusLight::Good, "transmitted nothing", figures);
         }
@@ -237,6 +243,16 @@ impl Statement {
             let words = format!("the wheel took up {:.3} N m", verdict.arm_moment);
             let why = format!("{figures}; the moment past the wheel is {} N m", significant(past_wheel));
             return Self::new(StatusLight::Good, words, why);
+        }
+        if let Some(shared) = &verdict.shared {
+            let six = ["f_x", "f_y", "f_z", "n_x", "n_y", "n_z"].iter().zip(shared.silent());
+            let felt: Vec<&str> = six.filter(|(_, silent)| !silent).map(|(name, _)| *name).collect();
+            let words = format!("{} on the shared base", felt.join(", "));
+            return Self::new(
+                StatusLight::Bad,
+                words,
+                format!("{figures}; `stillbase check` tells the blocks that react"),
+            );
         }
         let parts = [
             peaks.transmits_moment().then(|| format!("|n_B| {} N m", significant(verdict.arm_moment))),
@@ -369,7 +385,12 @@ impl Statements {
             return Self::of_drawing(unfinished);
         }
         let machine = Statement::clone(&of_moving_machine(run, frame));
-        let plan = Statement::of_plan(run, frame, &inertia_of(run));
+        let mut plan = Statement::of_plan(run, frame, &inertia_of(run));
+        if run.shared().is_some() && plan.outcome == StatusLight::Bad {
+            // What a block does alone, the others may cancel.
+            plan.outcome = StatusLight::Open;
+            plan.why += "; what the other blocks do at the same time may cancel it";
+        }
         let run = Statement::of_run(run, frame, &machine);
         Self { machine, plan, run }
     }

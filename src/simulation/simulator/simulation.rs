@@ -465,6 +465,7 @@ impl Simulation {
             peaks: self.peaks,
             totals: self.totals,
             audit: self.audited(b - b_reference),
+            shared: None,
         }
     }
 }

@@ -9,8 +9,8 @@ use crate::scene::linkage::LinkageModel;
 use crate::scene::options::{Handle, ViewOptions};
 use crate::scene::palette::{Palette, faded};
 use crate::scene::{
-    Anchor, Area, ItemChanges, Label, Marker, Measure, Mesh, Name, Polyline, Rgba, Scene, Shade, Solid, Strips,
-    dexterity, fill, point, posed,
+    Anchor, Area, IN_PLACE, ItemChanges, Label, Marker, Measure, Mesh, Name, Polyline, Rgba, Scene, Shade, Solid,
+    Strips, dexterity, fill, point, posed,
 };
 use stillbase_mechanics::planar::{Pose2, Vector, unit};
 use stillbase_planning::off_plane::rays::Rays;
@@ -404,6 +404,7 @@ fn area(map: &PlaneMap, turn: f64, at: Vector, name: impl Into<Name>, z: f64, co
         turn: turn.rem_euclid(TAU) as f32,
         at: [at.re as f32, at.im as f32],
         z: z as f32,
+        world_from_plane: IN_PLACE,
         colour,
         shade: None,
     }

@@ -1,0 +1,233 @@
+//! [`SharedRun`]: the blocks beside the one that a run leads, and the base that all of them share.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::block::AssemblyBlock;
+use super::file::AssemblyBase;
+use super::run::{AssemblyFrame, AssemblyVerdict};
+use crate::changes::in_order;
+use crate::edit::TimedEdit;
+use crate::refusal::Refusal;
+use crate::run::Run;
+use stillbase_mechanics::assembly::{Attitude, BlockState, MAX_BLOCKS};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
+use stillbase_simulation::frame::{Frame, SharedBase};
+
+/// The other blocks of an assembly in motion, step by step with the block that is led.
+#[derive(Clone, Debug)]
+pub struct SharedRun {
+    block: Arc<AssemblyBlock>,
+    others: Vec<Option<OtherBlock>>,
+    /// States of all blocks at the present step.
+    states: [BlockState; MAX_BLOCKS],
+    attitude: Attitude,
+    /// Centre of mass of everything in space, m: it stays where it is if the base floats.
+    com: Vector3<f64>,
+    verdict: AssemblyVerdict,
+    /// Largest distance of the base from where it was, m.
+    shift: f64,
+}
+
+/// A block that is not led, with the edits of its scenario.
+#[derive(Clone, Debug)]
+struct OtherBlock {
+    run: Run,
+    script: Arc<[TimedEdit]>,
+    /// Index of the first edit that is not applied yet.
+    next: usize,
+}
+
+impl OtherBlock {
+    /// Applies the edits that are due. They were applied before, when their block was led.
+    fn edit(&mut self) {
+        let step = self.run.simulation().step_count();
+        while let Some(due) = self.script.get(self.next).filter(|timed| timed.step <= step) {
+            self.next += 1;
+            if self.run.apply(&due.edit).is_err() {
+                break;
+            }
+        }
+    }
+}
+
+/// Query for the other blocks at their start.
+struct OtherBlocks;
+
+impl QuickQuery for OtherBlocks {
+    type Input = ByIdentity<AssemblyBlock>;
+    type Answer = Result<Vec<Option<OtherBlock>>, Refusal>;
+
+    fn answer(ByIdentity(block): &Self::Input) -> Self::Answer {
+        let assembly = &block.scenario.assembly;
+        let begun = |(i, task): (usize, &super::file::BlockTask)| {
+            if i == block.block {
+                return Ok(None);
+            }
+            let script: Arc<[TimedEdit]> = in_order(&task.scenario.edits).into();
+            let begun = Run::begin(&task.scenario, &script, None).map_err(|failed| failed.named(&task.scenario.edits));
+            let begun = begun.and_then(|(run, next)| match run.waiting() {
+                Some(waiting) => Err(waiting.why.clone()),
+                None => Ok((run, next)),
+            });
+            let (run, next) =
+                begun.map_err(|why| Refusal::Task(format!("block {}: {why}", assembly.blocks()[i].name)))?;
+            let mut other = OtherBlock { run, script, next };
+            other.edit();
+            Ok(Some(other))
+        };
+        block.scenario.tasks.iter().enumerate().map(begun).collect()
+    }
+}
+
+/// Returns the state of motion of a frame.
+pub fn state_of(frame: &Frame) -> BlockState {
+    BlockState { q: frame.q, qd: frame.qd, qdd: frame.qdd }
+}
+
+/// Returns the state at a share of a step of h seconds between two states: the polynomial of fifth degree with their
+/// angles, rates and accelerations.
+pub fn between(from: &BlockState, to: &BlockState, h: f64, share: f64) -> BlockState {
+    let n = from.qd.len();
+    let of = |k: usize| {
+        let [p, v, a] = [from.q[k], h * from.qd[k], h * h * from.qdd[k]];
+        let [end, end_v, end_a] = [to.q[k], h * to.qd[k], h * h * to.qdd[k]];
+        // What the parabola from the start misses at the end.
+        let (d, dv, da) = (end - p - v - 0.5 * a, end_v - v - a, end_a - a);
+        let c = [10.0 * d - 4.0 * dv + 0.5 * da, -15.0 * d + 7.0 * dv - da, 6.0 * d - 3.0 * dv + 0.5 * da];
+        let s = share;
+        let angle = p + s * (v + s * (0.5 * a + s * (c[0] + s * (c[1] + s * c[2]))));
+        let rate = v + s * (a + s * (3.0 * c[0] + s * (4.0 * c[1] + s * 5.0 * c[2])));
+        let acceleration = a + s * (6.0 * c[0] + s * (12.0 * c[1] + s * 20.0 * c[2]));
+        [angle, rate / h, acceleration / (h * h)]
+    };
+    BlockState {
+        q: DriveAngles(PerDrive::from_fn(n, |k| of(k)[0])),
+        qd: PerDrive::from_fn(n, |k| of(k)[1]),
+        qdd: PerDrive::from_fn(n, |k| of(k)[2]),
+    }
+}
+
+impl SharedRun {
+    /// Returns the other blocks at their start, while the block that is led is in the state of a frame.
+    ///
+    /// # Errors
+    /// If the task of a block cannot be planned.
+    pub fn new(block: &Arc<AssemblyBlock>, led: &Frame, queries: &Queries) -> Result<Self, Refusal> {
+        let others = queries.ask::<QuickWork<OtherBlocks>>(&ByIdentity(block.clone()));
+        let none = PerDrive::zeros(0);
+        let mut shared = Self {
+            block: block.clone(),
+            others: Result::clone(&others)?,
+            states: [BlockState { q: DriveAngles(none), qd: none, qdd: none }; MAX_BLOCKS],
+            attitude: Attitude::level(),
+            com: Vector3::zeros(),
+            verdict: AssemblyVerdict::default(),
+            shift: 0.0,
+        };
+        shared.states = shared.states_with(led);
+        if let AssemblyBase::Free(base) = &shared.block.scenario.base {
+            shared.com = shared.block.scenario.assembly.base_motion(base, &shared.states, &Vector3::zeros()).com;
+        }
+        shared.see(led);
+        Ok(shared)
+    }
+
+    /// Returns the place of the block that is led.
+    pub fn block(&self) -> &Arc<AssemblyBlock> {
+        &self.block
+    }
+
+    /// Returns the runs of the other blocks, each with its place in the assembly.
+    pub fn others(&self) -> impl Iterator<Item = (usize, &Run)> {
+        self.others.iter().enumerate().filter_map(|(i, other)| Some((i, &other.as_ref()?.run)))
+    }
+
+    fn states_with(&self, led: &Frame) -> [BlockState; MAX_BLOCKS] {
+        let mut states = self.states;
+        states[self.block.block] = state_of(led);
+        for (i, run) in self.others() {
+            states[i] = state_of(&run.frame());
+        }
+        states
+    }
+
+    /// Advances the other blocks by a step; `led` is the frame after it of the block that is led.
+    pub fn advance(&mut self, led: &Frame) {
+        for other in self.others.iter_mut().flatten() {
+            other.run.advance();
+            other.edit();
+        }
+        let (before, after) = (self.states, self.states_with(led));
+        let AssemblyBlock { scenario, .. } = &*self.block;
+        if let AssemblyBase::Free(base) = &scenario.base {
+            let (assembly, h, count) = (&scenario.assembly, scenario.step, scenario.assembly.blocks().len());
+            self.attitude = self.attitude.after(h, |share, _| {
+                let mut states = before;
+                for i in 0..count {
+                    states[i] = match share {
+                        0.0 => before[i],
+                        1.0 => after[i],
+                        share => between(&before[i], &after[i], h, share),
+                    };
+                }
+                assembly.base_motion(base, &states, &Vector3::zeros()).rate
+            });
+        }
+        self.states = after;
+        self.see(led);
+    }
+
+    fn see(&mut self, led: &Frame) {
+        let frame = self.whole(led);
+        self.verdict.see(&self.block.scenario.assembly, &frame);
+        self.shift = self.shift.max(frame.origin.norm());
+    }
+
+    /// Returns the frame of the whole at the present step.
+    fn whole(&self, led: &Frame) -> AssemblyFrame {
+        let assembly = &self.block.scenario.assembly;
+        let mut states = self.states;
+        states[self.block.block] = state_of(led);
+        let (origin, rate) = match &self.block.scenario.base {
+            AssemblyBase::Fixed => (Vector3::zeros(), Vector3::zeros()),
+            AssemblyBase::Free(base) => {
+                let motion = assembly.base_motion(base, &states, &Vector3::zeros());
+                (self.com - self.attitude.0 * motion.com, motion.rate)
+            }
+        };
+        AssemblyFrame::of(assembly, (led.step, led.time), states, (self.attitude, origin, rate))
+    }
+
+    /// Returns what the shared base feels and does, while the block that is led is in the state of a frame.
+    pub fn base(&self, led: &Frame) -> SharedBase {
+        let AssemblyFrame { loads, attitude, origin, rate, .. } = self.whole(led);
+        let AssemblyVerdict { peaks, scale, turn: [most, _], .. } = self.verdict;
+        let turn = [most, attitude.0.angle()];
+        SharedBase {
+            loads,
+            attitude,
+            origin,
+            rate,
+            floats: self.block.scenario.base != AssemblyBase::Fixed,
+            peaks,
+            scale,
+            turn,
+            shift: self.shift,
+        }
+    }
+
+    /// Duration of the longest planned motion of the other blocks, s.
+    pub fn planned_time(&self) -> f64 {
+        let longest =
+            |(i, run): (usize, &Run)| if self.block.scenario.tasks[i].rests { 0.0 } else { run.planned_time() };
+        self.others().map(longest).fold(0.0, f64::max)
+    }
+
+    /// Returns whether the other blocks are at rest.
+    pub fn is_settled(&self) -> bool {
+        self.others().all(|(_, run)| run.simulation().is_settled())
+    }
+}
