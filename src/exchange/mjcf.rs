@@ -144,7 +144,7 @@ impl<'a> Model<'a> {
     /// Returns the text, if MuJoCo can simulate all links.
     fn checked_text(&self, poses: &[&[f64]], cut: &Cut) -> Result<String, MjcfError> {
         for placed in &self.of.machines {
-            let massless = |link: &str, what| MjcfError::Massless { link: placed.tree.own(link), what };
+            let massless = |link: &str, what| MjcfError::Massless { link: placed.told(link), what };
             for link in placed.machine.links() {
                 if link.mass < MIN_MASS_OR_INERTIA {
                     return Err(massless(&link.name, "mass"));

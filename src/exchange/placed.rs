@@ -6,7 +6,7 @@ use super::base_body::BaseBody;
 use super::look::DRAWN_BAR_RADIUS;
 use super::tree::Tree;
 use super::xml::quoted;
-use stillbase_mechanics::assembly::{Assembly, Mount, SpatialBase};
+use stillbase_mechanics::assembly::{Assembly, Block, Mount, SpatialBase};
 use stillbase_mechanics::machine::Machine;
 
 /// Least inertia that is written for a body that moves, kg m²: MuJoCo treats less as none.
@@ -38,8 +38,8 @@ pub struct Placed<'a> {
     pub machine: &'a Machine,
     /// Its parts and their names.
     pub tree: Tree<'a>,
-    /// Where the block is; `None` for a machine by itself.
-    pub mount: Option<&'a Mount>,
+    /// Its block; `None` for a machine by itself.
+    pub block: Option<&'a Block>,
     /// Machines on its platform.
     pub carries: Vec<usize>,
 }
@@ -53,7 +53,7 @@ impl<'a> Modelled<'a> {
             name: &machine.spec().name,
             gravity: [x, y, 0.0],
             base: base.map(FloatingBase::Planar),
-            machines: vec![Placed { machine, tree, mount: None, carries: Vec::new() }],
+            machines: vec![Placed { machine, tree, block: None, carries: Vec::new() }],
             order: vec![0],
         }
     }
@@ -63,7 +63,7 @@ impl<'a> Modelled<'a> {
         let placed = |i: usize| {
             let (block, carries) = (&assembly.blocks()[i], assembly.carried_by(Some(i)).collect::<Vec<_>>());
             let tree = Tree::of(&block.machine, format!("{}/", quoted(&block.name)), !carries.is_empty());
-            Placed { machine: &block.machine, tree, mount: Some(&block.mount), carries }
+            Placed { machine: &block.machine, tree, block: Some(block), carries }
         };
         Self {
             name: &assembly.name,
@@ -76,7 +76,7 @@ impl<'a> Modelled<'a> {
 
     /// Returns the machines on the base.
     pub fn on_base(&self) -> impl Iterator<Item = usize> {
-        (0..self.machines.len()).filter(|i| self.machines[*i].mount.is_none_or(|mount| mount.on.is_none()))
+        (0..self.machines.len()).filter(|i| self.machines[*i].mount().is_none_or(|mount| mount.on.is_none()))
     }
 
     /// Mass of all machines, kg.
@@ -87,7 +87,7 @@ impl<'a> Modelled<'a> {
     /// Returns place and directions of a block in the axes of what carries it, which are those of the base or of the
     /// plane of its carrier.
     pub fn seat(&self, mount: &Mount) -> (Vector3<f64>, Matrix3<f64>) {
-        match mount.on.and_then(|on| self.machines[on].mount) {
+        match mount.on.and_then(|on| self.machines[on].mount()) {
             // A platform keeps its orientation, so what it carries does not turn in its axes.
             Some(carrier) => (carrier.axes.tr_mul(&mount.at), carrier.axes.tr_mul(&mount.axes)),
             None => (mount.at, mount.axes),
@@ -109,19 +109,29 @@ impl FloatingBase<'_> {
     }
 }
 
-impl Placed<'_> {
+impl<'a> Placed<'a> {
+    /// Where the block is; `None` for a machine by itself.
+    pub fn mount(&self) -> Option<&'a Mount> {
+        self.block.map(|block| &block.mount)
+    }
+
+    /// Returns the name of a part as it is told, with that of the block.
+    pub fn told(&self, name: &str) -> String {
+        self.block.map_or_else(|| name.to_owned(), |block| format!("{}/{name}", block.name))
+    }
+
     /// Returns where the end effector is along its link, and its height over the plane, m. A machine by itself is flat.
     pub fn end(&self) -> [f64; 2] {
         let machine = self.machine;
         let part = &machine.resolved_links()[machine.end_link()];
-        let height = self.mount.map_or(0.0, |_| machine.spec().payload.axial);
+        let height = self.block.map_or(0.0, |_| machine.spec().payload.axial);
         [machine.end_effector()[part.drive] - part.root[part.drive], height]
     }
 
     /// Returns the inertia of a link or payload about the axes of its link, kg m². In space it is a thin bar, as
     /// [`SpatialBase`] has it; otherwise only the last number counts, and any of at least half of it go with it.
     pub fn of_bar(&self, inertia: f64) -> [f64; 3] {
-        match self.mount {
+        match self.block {
             Some(_) => [inertia.min(LEAST_INERTIA), inertia, inertia],
             None => [0.6 * inertia, 0.6 * inertia, inertia],
         }
@@ -130,7 +140,7 @@ impl Placed<'_> {
     /// Returns the same of a rotor about the axes of its seat; in space it has the least that a body of this inertia can
     /// have about axes across its own.
     pub fn of_rotor(&self, inertia: f64) -> [f64; 3] {
-        let share = if self.mount.is_some() { 0.5 } else { 0.6 };
+        let share = if self.block.is_some() { 0.5 } else { 0.6 };
         [share * inertia, share * inertia, inertia]
     }
 }

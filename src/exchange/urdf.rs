@@ -95,7 +95,7 @@ impl<'a> Model<'a> {
         self.lines.add(0, format_args!("<?xml version=\"1.0\"?>"));
         self.lines.add(0, format_args!("<robot name=\"{name}\">"));
         match self.of.machines.first() {
-            Some(Placed { mount: None, .. }) => {
+            Some(Placed { block: None, .. }) => {
                 self.remark(
                     "Axes of all joints are parallel to z of base. Only the joints drive_… move by themselves.",
                 );
@@ -156,14 +156,15 @@ impl<'a> Model<'a> {
 
     /// Writes the base of a block.
     fn seat_link(&mut self, i: usize) {
-        if self.of.machines[i].mount.is_some() {
+        if self.of.machines[i].block.is_some() {
             self.part(i, TreePart::Base);
         }
     }
 
     /// Writes the joint that holds the base of a block at its mount.
     fn seat_joint(&mut self, i: usize) {
-        let Placed { tree, mount: Some(mount), .. } = &self.of.machines[i] else { return };
+        let placed = &self.of.machines[i];
+        let (tree, Some(mount)) = (&placed.tree, placed.mount()) else { return };
         let parent = match mount.on {
             Some(on) => self.of.machines[on].tree.name(TreePart::Platform),
             None => "base".to_owned(),
@@ -187,7 +188,7 @@ impl<'a> Model<'a> {
         let mut all = Vec::new();
         let [x, y, z] = self.of.gravity;
         if self.of.gravity != [0.0; 3] {
-            let is_flat = self.of.machines.iter().all(|of| of.mount.is_none());
+            let is_flat = self.of.machines.iter().all(|of| of.block.is_none());
             let out_of_plane = if is_flat { String::new() } else { format!(" z=\"{z}\"") };
             all.push(format!("<gravity x=\"{x}\" y=\"{y}\"{out_of_plane}/>"));
         }
@@ -307,7 +308,7 @@ impl<'a> Model<'a> {
 /// Returns roll, pitch and yaw of axes, given as columns, rad: R = R_z R_y R_x.
 fn angles(axes: &Matrix3<f64>) -> [f64; 3] {
     let yaw = axes[(1, 0)].atan2(axes[(0, 0)]);
-    let pitch = (-axes[(2, 0)]).atan2(axes[(0, 0)].hypot(axes[(1, 0)]));
+    let pitch = (0.0 - axes[(2, 0)]).atan2(axes[(0, 0)].hypot(axes[(1, 0)]));
     // Taken back by the yaw, so that rounding cancels where x is upright and the yaw could be any.
     let (sin, cos) = yaw.sin_cos();
     let roll = (sin * axes[(0, 2)] - cos * axes[(1, 2)]).atan2(cos * axes[(1, 1)] - sin * axes[(0, 1)]);

@@ -3,7 +3,7 @@
 use super::Model;
 use crate::cut::{Cut, DrawnSize, DrawnWeight};
 use crate::look::{BASE_COLOUR, DRIVE_COLOURS};
-use crate::placed::{FloatingBase, Placed};
+use crate::placed::FloatingBase;
 use crate::tree::TreePart;
 use crate::xml::XmlWriter;
 
@@ -60,7 +60,8 @@ impl Bodies<'_> {
 
     /// Writes a machine, a block in a body of its own at its mount.
     fn machine(&mut self, depth: usize, i: usize) {
-        let Placed { tree, mount, .. } = &self.model.of.machines[i];
+        let placed = &self.model.of.machines[i];
+        let (tree, mount) = (&placed.tree, placed.mount());
         let depth = match mount {
             None => depth,
             Some(mount) => {

@@ -11,7 +11,7 @@ impl Joins {
     pub(super) fn of(of: &Placed<'_>) -> Result<Self, MjcfError> {
         let machine = of.machine;
         let motor = |k: usize| {
-            let idle = || MjcfError::Idle { drive: of.tree.own(&machine.spec().drives[k].name) };
+            let idle = || MjcfError::Idle { drive: of.told(&machine.spec().drives[k].name) };
             PinAngleSum::of_drives(machine, machine.motors().on(k), k).ok_or_else(idle)
         };
         let motors = (0..machine.drives()).map(motor).collect::<Result<_, _>>()?;
