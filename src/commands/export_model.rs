@@ -31,10 +31,11 @@ use super::output::{Format, TextTable, write_file};
 ///
 /// MJCF: sensors at the base read the force and moment that hold the machine; the reaction has the opposite sign. The
 /// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
-/// `<stillbase>` contains what URDF cannot express. Both: a base that floats comes along, with its mass and joints; data that plane motion does not
-/// need, such as inertias about other axes, are made up. An assembly, or its scenario, becomes a model of all blocks in
-/// space: names begin with that of the block, as wrist/drive_1, and links are thin bars. Solids: bars, plates, counterweights, lumps, the payload, pins and spacers at their
-/// heights, in mm; `stillbase layers` finds the heights.
+/// `<stillbase>` contains what URDF cannot express. Both: a base that floats comes along, with its mass and joints; data
+/// that plane motion does not need, such as inertias about other axes, are made up. An assembly, or its scenario, becomes a
+/// model of all blocks in space. Their names begin with that of the block, as wrist/drive_1; links are thin bars. Solids:
+/// bars, plates, counterweights, lumps, the payload, pins and spacers at their heights, in mm; `stillbase layers` finds
+/// the heights.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
