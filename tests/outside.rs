@@ -37,6 +37,8 @@ mod markdown;
 mod mesh;
 #[path = "outside/mujoco.rs"]
 mod mujoco;
+#[path = "outside/mujoco_assembly.rs"]
+mod mujoco_assembly;
 #[path = "support/noise.rs"]
 mod noise;
 #[path = "outside/package.rs"]
@@ -46,6 +48,8 @@ mod package;
 mod page;
 #[path = "outside/pinocchio.rs"]
 mod pinocchio;
+#[path = "outside/pinocchio_assembly.rs"]
+mod pinocchio_assembly;
 #[path = "outside/planar.rs"]
 mod planar;
 #[path = "outside/postures.rs"]
@@ -80,8 +84,10 @@ fn main() -> ExitCode {
         ("numpy", mesh::TESTS),
         ("mujoco", afloat::TESTS),
         ("mujoco", mujoco::TESTS),
+        ("mujoco", mujoco_assembly::TESTS),
         ("mujoco", planar::TESTS),
         ("pinocchio", pinocchio::TESTS),
+        ("pinocchio", pinocchio_assembly::TESTS),
         ("stillbase, pandas", package::TESTS),
         #[cfg(feature = "cli")]
         ("stillbase, pandas, matplotlib, mujoco, pinocchio", package::NOTEBOOKS),

@@ -227,6 +227,14 @@ impl MachineArgument {
         self.settings.apply_to_assembly(assembly).map(Some)
     }
 
+    /// Returns the scenario of an assembly that the argument names, with its settings changed; `None` for anything else.
+    ///
+    /// # Errors
+    /// As [`assembly_scenario`].
+    pub fn assembly_scenario(&self) -> Result<Option<AssemblyScenario>, Failure> {
+        assembly_scenario(&self.name, &self.settings)
+    }
+
     /// Returns the name or file of the machine, as given.
     pub fn name(&self) -> &str {
         &self.name

@@ -18,6 +18,7 @@ mod ends;
 mod exit;
 mod export;
 mod export_model;
+mod export_model_assembly;
 pub mod failure;
 #[cfg(feature = "ui")]
 mod figures;

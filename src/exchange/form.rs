@@ -4,10 +4,11 @@ use super::base_body::BaseBody;
 use super::cut::{Cut, CutError};
 use super::drawing::{Sheet, dxf, svg};
 use super::left_out;
-use super::mjcf::{MjcfError, mjcf};
+use super::mjcf::{MjcfError, mjcf, mjcf_of_assembly};
 use super::parts::PartsList;
 use super::stl::{SolidsError, stl};
-use super::urdf::urdf;
+use super::urdf::{urdf, urdf_of_assembly};
+use stillbase_mechanics::assembly::{Assembly, SpatialBase};
 use stillbase_mechanics::machine::Machine;
 use stillbase_settings::cell_table::CellTable;
 
@@ -38,6 +39,13 @@ pub enum ModelContent {
     Parts,
 }
 
+impl ModelContent {
+    /// Returns whether it is a model for another program.
+    pub fn is_model(self) -> bool {
+        matches!(self, Self::Pose | Self::Joints)
+    }
+}
+
 /// What is exported; each format takes what it shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Exported<'a> {
@@ -48,6 +56,19 @@ pub struct Exported<'a> {
     /// Angles of its drives, rad: for formats that show a pose.
     pub pose: &'a [f64],
     /// Dimensions of what is cut, and the thickness of counterweights.
+    pub cut: &'a Cut,
+}
+
+/// What is exported of an assembly.
+#[derive(Clone, Copy, Debug)]
+pub struct ExportedAssembly<'a> {
+    /// The assembly.
+    pub assembly: &'a Assembly,
+    /// The base, if it floats.
+    pub base: Option<&'a SpatialBase>,
+    /// Angles of the drives of each block, rad: for formats that show a pose.
+    pub poses: &'a [&'a [f64]],
+    /// The thickness of counterweights.
     pub cut: &'a Cut,
 }
 
@@ -145,6 +166,12 @@ pub enum ExchangeError {
     /// The links make no solids.
     #[error(transparent)]
     Solids(#[from] SolidsError),
+    /// Files of this format show one machine.
+    #[error("a file that ends in .{ending} shows one machine: want {models} for an assembly, or one of its blocks", models = listed(ModelContent::is_model))]
+    OneMachine {
+        /// The ending.
+        ending: &'static str,
+    },
     /// No format has this ending.
     #[error("a name that ends in {ending:?}: want one that ends in {}", listed(|_| true))]
     Ending {
@@ -180,7 +207,7 @@ impl Form {
 
     /// Returns whether a file is a model for another program, with the base if that floats.
     pub fn is_model(&self) -> bool {
-        matches!(self.shows, ModelContent::Pose | ModelContent::Joints)
+        self.shows.is_model()
     }
 
     /// Returns what a file of the machine leaves out, or shows otherwise than it is weighed, in sentences.
@@ -195,5 +222,28 @@ impl Form {
     pub fn written(&self, of: &Exported) -> Result<FormContent, ExchangeError> {
         of.cut.check_ranges()?;
         (self.write)(of)
+    }
+    /// Returns the content of the file of an assembly.
+    ///
+    /// # Errors
+    /// If the format shows one machine only, or if the assembly cannot be exported in it.
+    pub fn written_assembly(&self, of: &ExportedAssembly) -> Result<String, ExchangeError> {
+        of.cut.check_ranges()?;
+        match self.shows {
+            ModelContent::Pose => Ok(mjcf_of_assembly(of.assembly, of.base, of.poses, of.cut)?),
+            ModelContent::Joints => Ok(urdf_of_assembly(of.assembly, of.base, of.cut)),
+            ModelContent::Links | ModelContent::Solids | ModelContent::Parts => {
+                Err(ExchangeError::OneMachine { ending: self.ending })
+            }
+        }
+    }
+
+    /// Returns what a model of an assembly leaves out, in sentences: of the whole, then of each block.
+    pub fn left_out_of_assembly(&self, of: &ExportedAssembly) -> Vec<String> {
+        let blocks = of.assembly.blocks().iter().flat_map(|block| {
+            let of_block = self.left_out(&block.machine).into_iter();
+            of_block.map(move |what| format!("block {}: {what}", block.name))
+        });
+        left_out::of_assembly(of.assembly, of.base).into_iter().chain(blocks).collect()
     }
 }

@@ -2,6 +2,8 @@
 
 use super::cut::unweighed_tail;
 use super::mjcf::{MIN_MASS_OR_INERTIA, parallel};
+use super::placed::lighter;
+use stillbase_mechanics::assembly::{Assembly, SpatialBase};
 use stillbase_mechanics::machine::{Counterweight, CounterweightShape, Length, Link, LinkNumber, Machine, MachineSpec};
 use stillbase_mechanics::planar::Vector;
 use stillbase_settings::number::{counted, fixed};
@@ -105,6 +107,23 @@ pub fn of_mjcf(machine: &Machine) -> Vec<String> {
     }
     if !spec.angles.is_empty() {
         list.push("names and offsets of angles: MJCF limits the angles of pins and sums of them".to_owned());
+    }
+    list
+}
+
+/// Returns what a model leaves out of an assembly as a whole.
+pub fn of_assembly(assembly: &Assembly, base: Option<&SpatialBase>) -> Vec<String> {
+    let mut list = Vec::new();
+    if !assembly.summary.is_empty() {
+        list.push("summary: a model has none".to_owned());
+    }
+    list.push("what makes it an assembly again: import-model reads models of one machine".to_owned());
+    if base.is_some_and(|base| lighter(assembly, base).is_none()) {
+        list.push(
+            "rotors that spin about one axis only: theirs have half their inertia about the others too, and the base is \
+             too slender to have it taken off"
+                .to_owned(),
+        );
     }
     list
 }

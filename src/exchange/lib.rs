@@ -13,6 +13,7 @@ mod look;
 mod mesh;
 pub mod mjcf;
 pub mod parts;
+mod placed;
 pub mod solids;
 pub mod stl;
 pub mod thin;

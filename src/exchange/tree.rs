@@ -9,9 +9,10 @@
 //! joint. So a sum becomes several joints in series, with auxiliary parts of negligible mass between them. Programs
 //! that read a tree from its root need a joint before the joints that mimic it. Motors turn links directly if that
 //! gives this order, as in a serial arm. Otherwise each motor turns a shaft, and all links follow
-//! shafts.
+//! shafts. A platform turns back by all that its end effector turned, in the same way.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 use super::xml::quoted;
 use stillbase_mechanics::machine::Machine;
@@ -31,6 +32,10 @@ pub enum TreePart {
     /// The end effector.
     End,
     Payload,
+    /// An auxiliary part between the end effector and the platform, by its number, from 1.
+    Under(usize),
+    /// What moves with the end effector, keeps its orientation and carries other machines.
+    Platform,
 }
 
 /// Motion of a joint.
@@ -55,12 +60,14 @@ pub struct TreeJoint {
 /// All joints: those of motors first, in the order of the drives.
 pub struct Tree<'a> {
     machine: &'a Machine,
+    /// What all names begin with: nothing for a machine by itself, or else its block, as `wrist/`.
+    prefix: String,
     pub joints: Vec<TreeJoint>,
 }
 
 impl<'a> Tree<'a> {
-    /// Makes the tree of a machine.
-    pub fn of(machine: &'a Machine) -> Self {
+    /// Makes the tree of a machine, whose names begin with `prefix`. With `carries` it has a platform.
+    pub fn of(machine: &'a Machine, prefix: String, carries: bool) -> Self {
         let parts = machine.resolved_links();
         let turned = |k: usize| {
             let on = machine.motors().on(k);
@@ -68,41 +75,56 @@ impl<'a> Tree<'a> {
             (0..parts.len()).find(is_turned)
         };
         let links = (0..machine.drives()).map(turned).collect::<Vec<_>>();
-        let direct = Self { machine, joints: joints(machine, &links) };
+        let direct = Self { machine, prefix, joints: joints(machine, &links, carries) };
         match direct.is_readable() {
             true => direct,
-            false => Self { machine, joints: joints(machine, &vec![None; machine.drives()]) },
+            false => Self { joints: joints(machine, &vec![None; machine.drives()], carries), ..direct },
         }
+    }
+
+    /// Returns a name of its own, which no other machine of the model has.
+    pub fn own(&self, name: impl Display) -> String {
+        format!("{}{name}", self.prefix)
+    }
+
+    /// Returns the name of what has to do with a drive, as `gear_1`.
+    pub fn of_drive(&self, what: &str, k: usize) -> String {
+        self.own(format_args!("{what}_{}", quoted(&self.machine.spec().drives[k].name)))
     }
 
     /// Returns the name of a part.
     pub fn name(&self, part: TreePart) -> String {
-        let spec = self.machine.spec();
         let link = |j: usize| quoted(&self.machine.links()[j].name);
-        let drive = |k: usize| quoted(&spec.drives[k].name);
         match part {
-            TreePart::Base => "base".into(),
-            TreePart::Link(j) => format!("link_{}", link(j)),
-            TreePart::Shaft(k) => format!("shaft_{}", drive(k)),
-            TreePart::Rotor(k) => format!("rotor_{}", drive(k)),
-            TreePart::Between(j, number) => format!("pin_{number}_of_link_{}", link(j)),
-            TreePart::End => "end_effector".into(),
-            TreePart::Payload => "payload".into(),
+            TreePart::Base => self.own("base"),
+            TreePart::Link(j) => self.own(format_args!("link_{}", link(j))),
+            TreePart::Shaft(k) => self.of_drive("shaft", k),
+            TreePart::Rotor(k) => self.of_drive("rotor", k),
+            TreePart::Between(j, number) => self.own(format_args!("pin_{number}_of_link_{}", link(j))),
+            TreePart::End => self.own("end_effector"),
+            TreePart::Payload => self.own("payload"),
+            TreePart::Under(number) => self.own(format_args!("pin_{number}_of_platform")),
+            TreePart::Platform => self.own("platform"),
         }
     }
 
     /// Returns the name of a joint.
     pub fn joint_name(&self, joint: &TreeJoint) -> String {
         match joint.turns {
-            Turns::Motor(k) => format!("drive_{}", quoted(&self.machine.spec().drives[k].name)),
-            _ => format!("joint_{}", self.name(joint.child)),
+            Turns::Motor(k) => self.of_drive("drive", k),
+            _ => self.joint_to(joint.child),
         }
+    }
+
+    fn joint_to(&self, part: TreePart) -> String {
+        let name = self.name(part);
+        self.own(format_args!("joint_{}", &name[self.prefix.len()..]))
     }
 
     /// Returns the name of the joint that carries a part.
     pub fn holder(&self, part: TreePart) -> String {
         let joint = self.joints.iter().find(|joint| joint.child == part);
-        joint.map_or_else(|| format!("joint_{}", self.name(part)), |joint| self.joint_name(joint))
+        joint.map_or_else(|| self.joint_to(part), |joint| self.joint_name(joint))
     }
 
     /// Returns whether each joint comes after the joint that it mimics, from the root to the tips. This must hold in
@@ -135,7 +157,7 @@ fn is_ordered(joints: &[&TreeJoint]) -> bool {
 }
 
 /// Returns the joints of a machine; `turned` holds the link that each motor turns, `None` for a shaft.
-fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<TreeJoint> {
+fn joints(machine: &Machine, turned: &[Option<usize>], carries: bool) -> Vec<TreeJoint> {
     let parts = machine.resolved_links();
     let motors = machine.motors();
     let root = |j: usize| match parts[j].parent {
@@ -160,25 +182,36 @@ fn joints(machine: &Machine, turned: &[Option<usize>]) -> Vec<TreeJoint> {
             joints.push(TreeJoint { parent, at, child: TreePart::Rotor(k), turns: Turns::Follows(k, rotor.ratio) });
         }
     }
-    for j in (0..parts.len()).filter(|j| !turned.contains(&Some(*j))) {
-        let (mut parent, mut at) = root(j);
-        let turns = turns(machine, parts[j].parent.map(|p| parts[p].drive), Some(parts[j].drive));
+    // Adds a part with the joints in series that turn it from one drive to another; `between` are the parts between them.
+    let series = |joints: &mut Vec<TreeJoint>,
+                  (mut parent, mut at),
+                  [from, to]: [Option<usize>; 2],
+                  between: &dyn Fn(usize) -> TreePart,
+                  part| {
+        let turns = turns(machine, from, to);
         let (last, first) = match turns.split_last() {
             Some((last, first)) => (Turns::Follows(last.0, last.1), first),
             None => (Turns::Not, &[][..]),
         };
         for (number, (k, sign)) in first.iter().enumerate() {
-            let child = TreePart::Between(j, number + 1);
+            let child = between(number + 1);
             joints.push(TreeJoint { parent, at, child, turns: Turns::Follows(*k, *sign) });
             (parent, at) = (child, 0.0);
         }
-        joints.push(TreeJoint { parent, at, child: TreePart::Link(j), turns: last });
+        joints.push(TreeJoint { parent, at, child: part, turns: last });
+    };
+    for j in (0..parts.len()).filter(|j| !turned.contains(&Some(*j))) {
+        let drives = [parts[j].parent.map(|p| parts[p].drive), Some(parts[j].drive)];
+        series(&mut joints, root(j), drives, &|number| TreePart::Between(j, number), TreePart::Link(j));
     }
     let (j, payload) = (machine.end_link(), machine.spec().payload);
     let at = machine.end_effector()[parts[j].drive] - parts[j].root[parts[j].drive];
     joints.push(TreeJoint { parent: TreePart::Link(j), at, child: TreePart::End, turns: Turns::Not });
     if payload.mass > 0.0 || payload.inertia > 0.0 {
         joints.push(TreeJoint { parent: TreePart::End, at: 0.0, child: TreePart::Payload, turns: Turns::Not });
+    }
+    if carries {
+        series(&mut joints, (TreePart::End, 0.0), [Some(parts[j].drive), None], &TreePart::Under, TreePart::Platform);
     }
     joints
 }

@@ -1,6 +1,7 @@
 //! Machines for other programs. What those make of them is in `tests/outside/`.
 
 pub mod arms;
+mod assemblies;
 mod drawing;
 mod floating;
 mod import;

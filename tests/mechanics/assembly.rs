@@ -5,10 +5,10 @@ use serde_json::Value;
 use stillbase::mechanics::assembly::{
     Assembly, AssemblySpec, Attitude, BlockState, Momentum, Reacting, SpatialBase, SpatialWrench, parse,
 };
-use stillbase::mechanics::machine::{FileError, Machine, named, parse as parse_machine, to_toml};
+use stillbase::mechanics::machine::{FileError, Machine, named, parse as parse_machine};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, unit};
 
-use crate::support::random::a_machine;
+use crate::support::random::{a_machine, an_assembly};
 use crate::support::{Noise, array, close, family_machine, numbers};
 
 fn reference() -> Value {
@@ -133,41 +133,6 @@ fn a_floating_base_turns_as_in_the_reference() {
     assert_eq!(seen, 3);
 }
 
-/// A random direction frame.
-fn frame(noise: &mut Noise) -> [[f64; 3]; 2] {
-    let mut any = || Vector3::from_fn(|_, _| noise.between(-1.0, 1.0));
-    let x = any().normalize();
-    let y = any();
-    let y = (y - x * x.dot(&y)).normalize();
-    [x.into(), y.into()]
-}
-
-/// Two to four random machines with heights, on the base or on each other.
-fn random(noise: &mut Noise) -> Assembly {
-    let count = 2 + (noise.between(0.0, 2.999)) as usize;
-    let gravity: [f64; 3] = [noise.between(-3.0, 3.0), noise.between(-3.0, 3.0), noise.between(-9.0, 0.0)];
-    let mut text = format!("kind = \"assembly\"\nname = \"random\"\ngravity = {gravity:?}\n");
-    for i in 0..count {
-        let mut spec = loop {
-            let machine = a_machine(noise);
-            if machine.drives() < 8 {
-                break machine.spec().clone();
-            }
-        };
-        spec.gravity = [0.0; 2];
-        spec.links.iter_mut().for_each(|link| link.axial = noise.between(-0.2, 0.2));
-        spec.payload.axial = noise.between(-0.1, 0.1);
-        let machine = to_toml(&Machine::new(spec).expect("a machine"));
-        let on = if i > 0 && noise.between(0.0, 1.0) < 0.6 { format!("b{}", i - 1) } else { "base".into() };
-        let at: [f64; 3] = std::array::from_fn(|_| noise.between(-0.5, 0.5));
-        let [x, y] = frame(noise);
-        text += &format!(
-            "[[block]]\nname = \"b{i}\"\non = {on:?}\nat = {at:?}\nx = {x:?}\ny = {y:?}\nmachine = '''\n{machine}'''\n"
-        );
-    }
-    parse(&text, "random", &find).expect("an assembly")
-}
-
 /// A point mass, or a rotor without mass that spins about an axis.
 enum Piece {
     Mass(f64, Vector3<f64>),
@@ -273,7 +238,7 @@ fn near(what: &str, got: &Vector3<f64>, want: &Vector3<f64>, scale: f64, toleran
 fn blocks_are_the_sum_of_their_points() {
     let mut noise = Noise::of(20_261);
     for round in 0..60 {
-        let assembly = random(&mut noise);
+        let assembly = an_assembly(&mut noise);
         let states = random_states(&mut noise, &assembly);
         let own = assembly.momentum(&states);
         let want = momentum(&assembly, &states);
@@ -333,7 +298,7 @@ fn blocks_are_the_sum_of_their_points() {
 fn a_floating_base_keeps_the_momentum_of_points() {
     let mut noise = Noise::of(77);
     for _ in 0..40 {
-        let assembly = random(&mut noise);
+        let assembly = an_assembly(&mut noise);
         let states = random_states(&mut noise, &assembly);
         let any = |noise: &mut Noise| Vector3::from_fn(|_, _| noise.between(-0.4, 0.4));
         let root = Matrix3::from_fn(|_, _| noise.between(-1.0, 1.0));

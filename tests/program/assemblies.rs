@@ -120,3 +120,59 @@ fn blocks_follow_tasks_of_their_own() {
         fails(args, 2, &[words]);
     }
 }
+
+#[test]
+fn assemblies_go_out_as_models() {
+    let folder = Folder::new("assemblies");
+    let [xml, urdf, svg] = ["four.xml", "four.urdf", "wrist.svg"].map(|name| word(folder.path(name)));
+    let said = object(&["export-model", "four-freedoms", "-o", &xml]);
+    // It starts where its scenario does.
+    let start = object(&["simulate", "four-freedoms", "--signals", "angle", "--every", "1000"]);
+    let q = |path: &str| &start["signals"][format!("angle/{path}")][0];
+    let pose = said["pose"].as_array().expect("a list").clone();
+    assert_eq!(pose.len(), 5);
+    assert_eq!((&pose[0], &pose[4]), (q("carrier.1"), q("wrist.2")));
+    // Nine links and four, and the hinge of the platform.
+    assert_eq!(numbers(&said["qpos"]).len(), 14);
+    let model = fs::read_to_string(&xml).expect("a model");
+    for words in [
+        "<body name=\"carrier/base\" pos=\"0 0 0\" xyaxes=\"1 0 0 0 1 0\">",
+        "<body name=\"wrist/base\" pos=\"0 0 0\" xyaxes=\"0 0 1 1 0 0\">",
+        "<joint name=\"carrier/joint_platform\"/>",
+        "<tendon tendon1=\"direction of carrier/platform\" polycoef=\"0 0 0 0 0\"/>",
+        "<motor name=\"wrist/drive_2\"",
+        "objname=\"wrist/end_effector\"",
+    ] {
+        assert!(model.contains(words), "{words}");
+    }
+    let said = object(&["export-model", "carrier-and-wrist", "-o", &urdf]);
+    assert_eq!(said["joints"][3], "wrist/drive_1");
+    let model = fs::read_to_string(&urdf).expect("a model");
+    assert!(model.contains("<joint name=\"carrier/joint_platform\" type=\"continuous\">"), "{model}");
+    assert!(model.contains("<mimic joint=\"carrier/drive_3\" multiplier=\"-1\" offset=\"0\"/>"));
+    // The base of a scenario floats along.
+    let afloat = word(folder.path("afloat.xml"));
+    for args in [&["two-arms", "--base", "arm-against-arm"][..], &["arm-against-arm"]] {
+        let said = object(&[&["export-model"], args, &["-o", &afloat, "--force"]].concat());
+        assert_eq!((&said["base"]["mass"], &said["base"]["inertia"][2][2]), (&json!(60.0), &json!(6.0)));
+        assert_eq!(numbers(&said["qpos"])[..7], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        assert!(fs::read_to_string(&afloat).expect("a model").contains("<freejoint name=\"base_floats\"/>"));
+    }
+    let words = prints(&["export-model", "two-arms", "-o", &afloat, "--force", "--pose", "1,1,1,2,2,2"]);
+    assert!(words.contains("right.3") && words.contains("2.000000"), "{words}");
+    // A block by itself goes where any machine does.
+    assert_eq!(object(&["export-model", "carrier-and-wrist", "--block", "wrist", "-o", &svg])["links"], 4);
+    for (args, words) in [
+        (&["carrier-and-wrist", "-o", "x.stl"][..], "shows one machine: want .xml or .urdf for an assembly"),
+        (&["carrier-and-wrist", "-o", "x.svg"], "or one of its blocks, as --block carrier"),
+        (&["carrier-and-wrist", "-o", "x.xml", "--block", "elbow"], "no such block: want one of carrier, wrist"),
+        (&["nine-link", "-o", "x.xml", "--block", "arm"], "--block arm has no use here: want it with an assembly"),
+        (&["carrier-and-wrist", "-o", "x.xml", "--pose", "1,2"], "a pose of 2 angles: want 5"),
+        (&["carrier-and-wrist", "-o", "x.xml", "--pose", "1,2,3,4,inf"], "want finite angles"),
+        (&["two-arms", "-o", "x.xml", "--base", "four-freedoms"], "whose base floats"),
+        (&["carrier-and-wrist", "-o", "x.urdf", "--pose", "1,2,3,4,5"], "--pose has no effect on such a file"),
+        (&["carrier-and-wrist", "-o", "x.xml", "--set", "wrist.link.1.inertia=0"], "link \"wrist/1\" has inertia 0"),
+    ] {
+        fails(&[&["export-model"], args].concat(), 2, &[words]);
+    }
+}

@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
+use nalgebra::Vector3;
+use stillbase::mechanics::assembly::{self, Assembly};
 use stillbase::mechanics::balance::design;
-use stillbase::mechanics::machine::{Counterweight, Machine, parse};
+use stillbase::mechanics::machine::{Counterweight, Machine, parse, to_toml};
 use stillbase::mechanics::planar::{PerDrive, Vector, unit};
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 
@@ -177,4 +179,39 @@ pub fn with_counterweights(noise: &mut Noise) -> Machine {
         });
     }
     Machine::new(spec).expect("still a machine")
+}
+
+/// A random direction frame.
+fn frame(noise: &mut Noise) -> [[f64; 3]; 2] {
+    let mut any = || Vector3::from_fn(|_, _| noise.between(-1.0, 1.0));
+    let x = any().normalize();
+    let y = any();
+    let y = (y - x * x.dot(&y)).normalize();
+    [x.into(), y.into()]
+}
+
+/// Two to four random machines with heights, on the base or on each other.
+pub fn an_assembly(noise: &mut Noise) -> Assembly {
+    let count = 2 + (noise.between(0.0, 2.999)) as usize;
+    let gravity: [f64; 3] = [noise.between(-3.0, 3.0), noise.between(-3.0, 3.0), noise.between(-9.0, 0.0)];
+    let mut text = format!("kind = \"assembly\"\nname = \"random\"\ngravity = {gravity:?}\n");
+    for i in 0..count {
+        let mut spec = loop {
+            let machine = a_machine(noise);
+            if machine.drives() < 8 {
+                break machine.spec().clone();
+            }
+        };
+        spec.gravity = [0.0; 2];
+        spec.links.iter_mut().for_each(|link| link.axial = noise.between(-0.2, 0.2));
+        spec.payload.axial = noise.between(-0.1, 0.1);
+        let machine = to_toml(&Machine::new(spec).expect("a machine"));
+        let on = if i > 0 && noise.between(0.0, 1.0) < 0.6 { format!("b{}", i - 1) } else { "base".into() };
+        let at: [f64; 3] = std::array::from_fn(|_| noise.between(-0.5, 0.5));
+        let [x, y] = frame(noise);
+        text += &format!(
+            "[[block]]\nname = \"b{i}\"\non = {on:?}\nat = {at:?}\nx = {x:?}\ny = {y:?}\nmachine = '''\n{machine}'''\n"
+        );
+    }
+    assembly::parse(&text, "random", &|text| parse(text, "random")).expect("an assembly")
 }

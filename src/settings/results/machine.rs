@@ -107,7 +107,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("volume", "m³", "Volume of all solids together."),
     row("left_out", "", "What the model leaves out, in words."),
     row("base", "", "The base of the model."),
-    row("base.com", "m", "Centre of mass of the base, relative to the axis of the drives.").frame(BASE),
+    row("base.com", "m", "Centre of mass of the base, relative to the axis of the drives, or to the origin of the base of an assembly.").frame(BASE),
     row("base.floats", "", "Whether the model lets the base float."),
     // Inside the machine.
     row("pins", "", "Load of each pin."),

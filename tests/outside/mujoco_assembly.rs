@@ -1,0 +1,291 @@
+//! Assemblies in space: MuJoCo finds the same wrench at the base, the same torques and the same momentum.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use serde_json::{Value, json};
+use stillbase::exchange::cut::Cut;
+use stillbase::exchange::mjcf::{mjcf_of_assembly, qpos_of_assembly};
+use stillbase::files::assembly_scenario;
+use stillbase::mechanics::assembly::{Assembly, BlockState, SpatialBase, builtin_assemblies};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::session::assembly::{AssemblyBase, AssemblyFrame, AssemblyRun};
+use stillbase::session::scenario::ScenarioError;
+
+use super::python::answers;
+use crate::random::an_assembly;
+use crate::{Noise, Test};
+
+pub const TESTS: &[Test] = tests![
+    every_assembly_pulls_the_same_at_the_base,
+    blocks_turn_a_free_base_alike,
+    silent_runs_are_silent_in_mujoco,
+    torques_move_the_blocks_alike,
+];
+
+const SCRIPT: &str = include_str!("mujoco_assembly.py");
+
+fn poses(states: &[BlockState]) -> Vec<Vec<f64>> {
+    states.iter().map(|state| state.q.0.to_vec()).collect()
+}
+
+/// The joints of the model in a pose; with a base that floats the first seven are its own.
+fn qpos(assembly: &Assembly, base: Option<&SpatialBase>, poses: &[Vec<f64>]) -> Vec<f64> {
+    let poses: Vec<&[f64]> = poses.iter().map(Vec::as_slice).collect();
+    qpos_of_assembly(assembly, base, &poses).expect("a pose")
+}
+
+/// How each hinge turns with each drive: hinges follow the drives in proportion.
+fn columns(assembly: &Assembly) -> Vec<Vec<f64>> {
+    let still: Vec<Vec<f64>> = assembly.blocks().iter().map(|block| vec![0.0; block.machine.drives()]).collect();
+    let mut all = Vec::new();
+    for (i, block) in assembly.blocks().iter().enumerate() {
+        for k in 0..block.machine.drives() {
+            let mut turned = still.clone();
+            turned[i][k] = 1.0;
+            let pair = [&turned, &still].map(|poses| qpos(assembly, None, poses));
+            all.push(pair[0].iter().zip(&pair[1]).map(|(a, b)| a - b).collect());
+        }
+    }
+    all
+}
+
+/// How the base moves: joints, velocity in space, and rate in its axes.
+type OfBase = ([f64; 7], Vector3<f64>, Vector3<f64>);
+
+struct Asked<'a> {
+    assembly: &'a Assembly,
+    base: Option<&'a SpatialBase>,
+    columns: Vec<Vec<f64>>,
+    motions: Vec<Value>,
+}
+
+impl<'a> Asked<'a> {
+    fn of(assembly: &'a Assembly, base: Option<&'a SpatialBase>) -> Self {
+        Self { assembly, base, columns: columns(assembly), motions: Vec::new() }
+    }
+
+    /// How hinges turn if drives do.
+    fn hinges(&self, of: impl Fn(&BlockState) -> PerDrive, states: &[BlockState]) -> Vec<f64> {
+        let all: Vec<f64> = states.iter().flat_map(|state| of(state).to_vec()).collect();
+        let one = |i: usize| self.columns.iter().zip(&all).map(|(column, x)| column[i] * x).sum();
+        (0..self.columns[0].len()).map(one).collect()
+    }
+
+    fn motion(&mut self, states: &[BlockState], of_base: Option<&OfBase>) {
+        let states = &states[..self.assembly.blocks().len()];
+        let mut at = qpos(self.assembly, self.base, &poses(states));
+        let [mut rates, mut accelerations] =
+            [self.hinges(|state| state.qd, states), self.hinges(|state| state.qdd, states)];
+        if let Some((place, velocity, rate)) = of_base {
+            at[..7].copy_from_slice(place);
+            rates = velocity.iter().chain(rate).copied().chain(rates).collect();
+            accelerations = [vec![0.0; 6], accelerations].concat();
+        }
+        self.motions.push(json!({ "qpos": at, "qvel": rates, "qacc": accelerations }));
+    }
+
+    fn line(&self, start: &[BlockState]) -> Value {
+        let poses = poses(&start[..self.assembly.blocks().len()]);
+        let poses: Vec<&[f64]> = poses.iter().map(Vec::as_slice).collect();
+        let blocks: Vec<&str> = self.assembly.blocks().iter().map(|block| block.name.as_str()).collect();
+        let model = mjcf_of_assembly(self.assembly, self.base, &poses, &Cut::default()).expect("a model");
+        json!({ "model": model, "columns": self.columns, "motions": self.motions, "blocks": blocks })
+    }
+
+    /// What MuJoCo finds of all motions.
+    fn found(&self, start: &[BlockState]) -> Vec<Value> {
+        let found = answers(SCRIPT, &[self.line(start).to_string()]).remove(0);
+        let found: Vec<Value> = serde_json::from_value(found).expect("a list");
+        assert_eq!(found.len(), self.motions.len());
+        found
+    }
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().expect("a list").iter().map(|x| x.as_f64().expect("a number")).collect()
+}
+
+#[track_caller]
+pub fn near(what: &str, got: &[f64], want: &Value, scale: f64) {
+    let want = numbers(want);
+    assert_eq!(got.len(), want.len(), "{what}");
+    let off = got.iter().zip(&want).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(off <= 1e-9 * scale, "{what}: {got:?}, found {want:?} (scale {scale})");
+}
+
+/// Our force and moment at the base, and the torque of each motor.
+pub fn loads(assembly: &Assembly, states: &[BlockState]) -> ([[f64; 3]; 2], Vec<PerDrive>) {
+    let mut torques = vec![PerDrive::zeros(0); assembly.blocks().len()];
+    let wrench = assembly.loads(states, |i, of| torques[i] = of.torque).total();
+    ([wrench.force.into(), wrench.moment.into()], torques)
+}
+
+/// What wrenches and torques are compared with: the largest number of the wrench, Σ|τ| or the mass.
+pub fn scale(assembly: &Assembly, wrench: &[[f64; 3]; 2], torques: &[PerDrive]) -> f64 {
+    let total: f64 = torques.iter().flat_map(|torque| torque.iter()).map(|x| x.abs()).sum();
+    wrench.as_flattened().iter().fold(total.max(assembly.mass()), |most, x| most.max(x.abs()))
+}
+
+/// Torques that turn each drive against the base: a motor turns what carries it back.
+fn against_base(assembly: &Assembly, torques: &[PerDrive]) -> Vec<f64> {
+    let mut all = Vec::new();
+    for (block, torque) in assembly.blocks().iter().zip(torques) {
+        let drives = block.machine.drives();
+        let back =
+            |k: usize| (0..drives).filter(|l| block.machine.motors().on(*l) == Some(k)).map(|l| torque[l]).sum::<f64>();
+        all.extend((0..drives).map(|k| torque[k] - back(k)));
+    }
+    all
+}
+
+fn compare(name: &str, assembly: &Assembly, states: &[BlockState], found: &Value) {
+    let (wrench, torques) = loads(assembly, states);
+    let ([force, moment], scale) = (wrench, scale(assembly, &wrench, &torques));
+    near(&format!("{name}: joined"), &[0.0, 0.0], &json!([found["open"], found["moves"]]), 1.0);
+    near(&format!("{name}: force"), &force, &found["force"], scale);
+    near(&format!("{name}: moment"), &moment, &found["moment"], scale);
+    near(&format!("{name}: τ"), &against_base(assembly, &torques), &found["torque"], scale);
+    for (i, tip) in assembly.end_effectors(states).iter().take(assembly.blocks().len()).enumerate() {
+        near(&format!("{name}: end effector"), tip.as_slice(), &found["tips"][i], 1.0);
+    }
+}
+
+pub fn random_states(noise: &mut Noise, assembly: &Assembly) -> Vec<BlockState> {
+    let one = |n: usize, noise: &mut Noise| {
+        let mut any = |most: f64| PerDrive::from_fn(n, |_| noise.between(-most, most));
+        BlockState { q: DriveAngles(any(3.0)), qd: any(3.0), qdd: any(20.0) }
+    };
+    assembly.blocks().iter().map(|block| one(block.machine.drives(), noise)).collect()
+}
+
+/// Those that come along, under gravity too, and random ones with heights, payloads and rotors, some of them carried.
+pub fn assemblies(noise: &mut Noise) -> Vec<Assembly> {
+    let mut all: Vec<Assembly> = builtin_assemblies().to_vec();
+    all.extend(builtin_assemblies().iter().map(|own| {
+        let mut heavy = own.clone();
+        heavy.set_gravity([1.3, -4.0, -9.0]).expect("in range");
+        heavy
+    }));
+    all.extend((0..24).map(|_| an_assembly(noise)));
+    assert!(all.iter().filter(|own| own.blocks().iter().any(|block| block.mount.on.is_some())).count() > 10);
+    all
+}
+
+fn every_assembly_pulls_the_same_at_the_base() {
+    let mut noise = Noise::of(3);
+    for assembly in assemblies(&mut noise) {
+        let states: Vec<Vec<BlockState>> = (0..8).map(|_| random_states(&mut noise, &assembly)).collect();
+        let mut asked = Asked::of(&assembly, None);
+        states.iter().for_each(|states| asked.motion(states, None));
+        let found = asked.found(&states[0]);
+        states.iter().zip(&found).for_each(|(states, found)| compare(&assembly.name, &assembly, states, found));
+    }
+}
+
+/// A base in space, some at an angle to its axes.
+pub fn a_base(noise: &mut Noise) -> SpatialBase {
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::from_fn(|_, _| noise.between(-1.0, 1.0)));
+    let axes = turn.to_rotation_matrix().into_inner();
+    let own = Matrix3::from_diagonal(&Vector3::from_fn(|_, _| noise.between(2.0, 3.0)));
+    let com = Vector3::from_fn(|_, _| noise.between(-0.3, 0.3));
+    SpatialBase { mass: noise.between(5.0, 50.0), com, inertia: axes * own * axes.transpose() }
+}
+
+/// The rate that we find leaves the momentum in space that it was found for.
+fn blocks_turn_a_free_base_alike() {
+    let mut noise = Noise::of(4);
+    for assembly in assemblies(&mut noise) {
+        let base = a_base(&mut noise);
+        let states: Vec<Vec<BlockState>> = (0..4).map(|_| random_states(&mut noise, &assembly)).collect();
+        let (mut asked, mut wanted) = (Asked::of(&assembly, Some(&base)), Vec::new());
+        for states in &states {
+            let mut any = |most: f64| Vector3::from_fn(|_, _| noise.between(-most, most));
+            let (turn, place, kept) = (UnitQuaternion::from_scaled_axis(any(2.0)), any(1.0), any(5.0));
+            let (motion, own) = (assembly.base_motion(&base, states, &kept), assembly.momentum(states));
+            let seen = own.linear / (base.mass + assembly.mass());
+            let velocity = turn * -(motion.rate.cross(&motion.com) + seen);
+            let joints = [place.x, place.y, place.z, turn.w, turn.i, turn.j, turn.k];
+            asked.motion(states, Some(&(joints, velocity, motion.rate)));
+            wanted.push((turn * kept, own.angular.norm() + own.linear.norm() + kept.norm()));
+        }
+        for (found, (angular, scale)) in asked.found(&states[0]).iter().zip(&wanted) {
+            near(&format!("{}: p", assembly.name), &[0.0; 3], &found["linear"], *scale);
+            near(&format!("{}: L", assembly.name), angular.as_slice(), &found["angular"], *scale);
+        }
+    }
+}
+
+fn run(name: &str) -> (AssemblyRun, Vec<AssemblyFrame>) {
+    let scenario = assembly_scenario::<ScenarioError>(name, &toml::Table::new(), Ok).expect("valid").expect("built in");
+    let (run, mut frames) = (AssemblyRun::new(&scenario).expect("a plan"), Vec::new());
+    run.run(|frame| {
+        frames.push(frame.clone());
+        true
+    });
+    (run, frames)
+}
+
+/// What reaches the base in the scenarios that come along, at sensors that are not ours.
+fn silent_runs_are_silent_in_mujoco() {
+    for (name, is_silent) in [("four-freedoms", true), ("off-its-pin", false)] {
+        let (run, frames) = run(name);
+        let assembly = &run.scenario().assembly;
+        let frames: Vec<&AssemblyFrame> = frames.iter().step_by(10).collect();
+        let mut asked = Asked::of(assembly, None);
+        frames.iter().for_each(|frame| asked.motion(&frame.states, None));
+        let found = asked.found(&frames[0].states);
+        let (mut peak, mut scale) = (0.0_f64, 0.0_f64);
+        for (frame, found) in frames.iter().zip(&found) {
+            compare(name, assembly, &frame.states, found);
+            let six = [&found["force"], &found["moment"]].map(numbers).concat();
+            peak = six.iter().fold(peak, |most, x| most.max(x.abs()));
+            scale = scale.max(frame.torques.iter().flat_map(|torque| torque.iter()).map(|x| x.abs()).sum());
+        }
+        assert_eq!(peak < 1e-10 * scale, is_silent, "{name}: {peak} of {scale}");
+    }
+    let (run, frames) = run("arm-against-arm");
+    let AssemblyBase::Free(base) = &run.scenario().base else { panic!("it floats") };
+    let mut asked = Asked::of(&run.scenario().assembly, Some(base));
+    let frames: Vec<&AssemblyFrame> = frames.iter().step_by(10).collect();
+    for AssemblyFrame { states, attitude, origin, rate, .. } in &frames {
+        let [w, x, y, z] = attitude.components();
+        // A base that does not turn moves with its arms.
+        let seen = run.scenario().assembly.momentum(states).linear / (base.mass + run.scenario().assembly.mass());
+        asked.motion(states, Some(&([origin.x, origin.y, origin.z, w, x, y, z], -(attitude.0 * seen), *rate)));
+    }
+    for found in asked.found(&frames[0].states) {
+        near("arm-against-arm: p", &[0.0; 3], &found["linear"], 1.0);
+        near("arm-against-arm: L", &[0.0; 3], &found["angular"], 1.0);
+    }
+}
+
+/// The torques of a run alone lead all end effectors where they go here.
+fn torques_move_the_blocks_alike() {
+    let (run, frames) = run("four-freedoms");
+    let (assembly, step) = (&run.scenario().assembly, run.scenario().step);
+    let asked = Asked::of(assembly, None);
+    let mut line = asked.line(&frames[0].states);
+    let blocks = assembly.blocks().len();
+    let torques: Vec<Vec<f64>> = (frames.iter())
+        .map(|frame| frame.torques[..blocks].iter().flat_map(|torque| torque.to_vec()).collect())
+        .collect();
+    line["qvel"] = json!(asked.hinges(|state| state.qd, &frames[0].states[..blocks]));
+    line["torques"] = json!(torques);
+    line["step"] = json!(step);
+    let found = answers(SCRIPT, &[line.to_string()]).remove(0);
+    let ways = found["tips"].as_array().expect("a list");
+    assert!(ways.len() > 900, "{}", ways.len());
+    let mut off = 0.0_f64;
+    for (frame, tips) in frames.iter().skip(2).step_by(2).zip(ways) {
+        for (tip, found) in frame.tips.iter().take(blocks).zip(tips.as_array().expect("a list")) {
+            off = off.max((tip - Vector3::from_vec(numbers(found))).norm());
+        }
+    }
+    let (reaction, torque) = (
+        found["reaction"].as_f64().expect("a number"),
+        torques.iter().map(|all| all.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max),
+    );
+    assert!(
+        off < 1e-6 && reaction < 1e-4 * torque,
+        "off by {off} m; {reaction} N or N m reach the base, of {torque} N m"
+    );
+}
