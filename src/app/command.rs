@@ -86,6 +86,8 @@ pub enum SessionCommand {
     Step(i64),
     /// Lead another block of the assembly, by its place.
     Lead(usize),
+    /// Have the b of another block of the assembly, by its place, change against that of the block that is led; or let go.
+    Against(Option<usize>),
     /// Open another scenario in place of the session.
     Open(Box<Scenario>),
     /// Open a new drawing of a machine.

@@ -108,6 +108,24 @@ fn of_machine(
     path::show(ui, session, p, commands);
 }
 
+/// Draws a box for each other block of the assembly whose b can change against that of the block that is led.
+fn against(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+    let Some(own) = &session.scenario().assembly else { return };
+    let bound = own.scenario.follower_of(own.block).map(|(other, _)| other);
+    for (i, block) in own.scenario.assembly.blocks().iter().enumerate() {
+        let Ok(factor) = own.scenario.factor(own.block, i) else { continue };
+        let mut is_bound = bound == Some(i);
+        let tip = format!(
+            "While b changes by 1 rad, that of {} changes by {factor:.3} rad: their planes are parallel, and the moments \
+             cancel. It follows the slider, and a planned change of b.",
+            block.name
+        );
+        if ui.checkbox(&mut is_bound, format!("against {}", block.name)).on_hover_text(tip).changed() {
+            commands.push(SessionCommand::Against(is_bound.then_some(i)).into());
+        }
+    }
+}
+
 fn pose_constant(
     ui: &mut Ui,
     session: &Session,
@@ -176,6 +194,7 @@ fn pose_constant(
     } else {
         send(commands, &responses, || edit);
     }
+    against(ui, session, commands);
     if session.is_dragged() {
         ui.horizontal(|ui| {
             ui.label(RichText::new("led by hand").font(plain(11.0)).color(colour(p.amber)));

@@ -117,11 +117,16 @@ impl Run {
         let guide = plan.guide(&scenario.machine);
         let simulation = Simulation::new(&scenario.setup(), guide)?;
         let shared = match &scenario.assembly {
-            Some(block) => Some(Box::new(SharedRun::new(block, &simulation.frame(), queries)?)),
+            Some(block) => Some(Box::new(SharedRun::new(&block.followed(scenario), &simulation.frame(), queries)?)),
             None => None,
         };
         let (scenario, plan) = (Arc::new(scenario.clone()), Arc::new(plan));
         Ok(Self { scenario, space, plan, waiting, simulation, shared, queries: queries.clone() })
+    }
+
+    /// Returns the bound on |b̈| while b is slid, rad/s²; `None` without a pose constant.
+    pub fn pose_bound(&self) -> Option<f64> {
+        Some(bounds(&self.scenario, self.space.as_ref().ok()?).pose)
     }
 
     /// Returns the reason why the run waits, if its task does not fit its machine or the drawing is no machine yet.
@@ -341,7 +346,10 @@ impl Run {
             }
             Edit::Push { .. } | Edit::Set { .. } | Edit::Sketch(_) => self.set(edit)?,
         }
-        Ok(())
+        match &mut self.shared {
+            Some(shared) => shared.follow(edit),
+            None => Ok(()),
+        }
     }
 
     /// Adopts those settings of a scenario on which no frame depends.

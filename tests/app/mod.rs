@@ -1,5 +1,6 @@
 //! The window, driven as a person does: widgets by label, the pointer in the scene, keys; and pictures of it.
 
+mod blocks;
 mod drawing;
 mod family;
 mod files;
@@ -45,8 +46,9 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 33] = [
+pub const TESTS: [&[Test]; 34] = [
     saving::TESTS,
+    blocks::TESTS,
     drawing::TESTS,
     family::TESTS,
     files::TESTS,

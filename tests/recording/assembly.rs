@@ -28,7 +28,7 @@ fn blocks_are_recorded_where_they_are() {
     let folder = Folder::new("recording-assembly");
     for name in ["four-freedoms", "arm-against-arm"] {
         let (run, file) = (run(name), folder.path(&format!("{name}.rrd")));
-        let verdict = record_assembly(&run, (&file, false), "# Note", &|| true).expect("recorded");
+        let verdict = record_assembly(&run, (&file, false), &|| true).expect("recorded");
         let (frames, contents) = (frames(&run), Contents::of(&file));
         assert_eq!(verdict.steps as usize + 1, frames.len());
         assert_eq!(contents.activated, 1);
@@ -80,14 +80,14 @@ fn blocks_are_recorded_where_they_are() {
             seen += 1;
         }
         assert!(seen > 20);
-        assert_eq!(contents.texts(&format!("/{name}/notes"), "TextDocument:text"), ["# Note"]);
+        assert_eq!(contents.texts(&format!("/{name}/notes"), "TextDocument:text")[0].lines().next(), Some(format!("# {}", run.scenario().title).as_str()));
         // The same again, but for when it was written; and nothing is replaced or left behind.
         let again = folder.path("again.rrd");
-        record_assembly(&run, (&again, true), "# Note", &|| true).expect("recorded");
+        record_assembly(&run, (&again, true), &|| true).expect("recorded");
         assert!(super::told(&again) == super::told(&file));
-        record_assembly(&run, (&file, false), "", &|| true).expect_err("it is there");
+        record_assembly(&run, (&file, false), &|| true).expect_err("it is there");
         let stopped = folder.path("stopped.rrd");
-        assert!(record_assembly(&run, (&stopped, false), "", &|| false).is_err() && !stopped.exists());
+        assert!(record_assembly(&run, (&stopped, false), &|| false).is_err() && !stopped.exists());
         std::fs::remove_file(&again).expect("there");
     }
     assert_eq!(folder.names(), ["arm-against-arm.rrd", "four-freedoms.rrd"]);

@@ -12,6 +12,7 @@ mod design;
 mod events;
 mod faults;
 mod hand;
+mod led_blocks;
 mod limits;
 mod machine_file;
 mod notes;

@@ -147,6 +147,7 @@ impl AppState {
             }
             SessionCommand::Step(steps) => self.session.step_by(steps),
             SessionCommand::Lead(block) => self.lead(block)?,
+            SessionCommand::Against(block) => self.bind_b(block)?,
             SessionCommand::Open(scenario) => {
                 self.open(SessionSource::Scenario(scenario), Opening { plays: true, ..Opening::default() });
             }

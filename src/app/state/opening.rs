@@ -139,12 +139,32 @@ impl AppState {
     pub(super) fn lead(&mut self, block: usize) -> Result<(), String> {
         let present = self.session.to_scenario();
         let Some(whole) = AssemblyScenario::of(&present).filter(|whole| whole.lead != block) else { return Ok(()) };
-        let name = &whole.assembly.blocks()[block].name;
-        let scenario = Scenario { duration: whole.duration, ..whole.leading(block) };
-        let mut next = Session::open(scenario).map_err(|refusal| refusal.to_string())?;
+        let title = format!("lead {}", whole.assembly.blocks()[block].name);
+        self.take_over_whole(&AssemblyScenario { lead: block, ..whole }, title)
+    }
+
+    /// Has the b of another block follow that of the block that is led, or lets go of it.
+    pub(super) fn bind_b(&mut self, other: Option<usize>) -> Result<(), String> {
+        let Some(mut whole) = AssemblyScenario::of(&self.session.to_scenario()) else { return Ok(()) };
+        let title = match other {
+            Some(other) => {
+                whole.bind([whole.lead, other])?;
+                format!("b against that of {}", whole.assembly.blocks()[other].name)
+            }
+            None => {
+                whole.against = None;
+                "b for itself".to_owned()
+            }
+        };
+        self.take_over_whole(&whole, title)
+    }
+
+    /// Takes over a scenario of the assembly on display, at the same instant.
+    fn take_over_whole(&mut self, whole: &AssemblyScenario, title: String) -> Result<(), String> {
+        let mut next = Session::open(whole.leading(whole.lead)).map_err(|refusal| refusal.to_string())?;
         next.seek(self.session.frame().time);
         let (old, plays) = (self.session.clone(), self.session.is_playing());
-        self.session.take_over_as(next, format!("lead {name}"));
+        self.session.take_over_as(next, title);
         if plays {
             self.session.play();
         }

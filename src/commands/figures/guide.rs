@@ -66,7 +66,7 @@ impl Shown {
 }
 
 /// The pictures with their names.
-const PICTURES: [(&str, Shown); 13] = [
+const PICTURES: [(&str, Shown); 16] = [
     ("window", Shown::Window("case-3", 0.62, Vec::new)),
     ("spacecraft", Shown::Window("spacecraft", 0.75, Vec::new)),
     ("compare", Shown::Window("case-1", 0.62, side_by_side)),
@@ -76,6 +76,9 @@ const PICTURES: [(&str, Shown); 13] = [
     ("workshop", Shown::Window("case-3", 0.62, stacked)),
     ("tower", Shown::Scene("case-3", 0.62, ViewKind::Tower)),
     ("joints", Shown::Scene("case-1", 0.5, ViewKind::Joints)),
+    ("assembly", Shown::Window("arm-against-arm", 1.4, Vec::new)),
+    ("assembly-wrist", Shown::Scene("four-freedoms", 1.0, ViewKind::Space)),
+    ("assembly-off-its-pin", Shown::Scene("off-its-pin", 0.5, ViewKind::Space)),
     ("paper-table-1", Shown::Paper(&[PaperFigure::Table1], 4.0)),
     ("paper-fig-3", Shown::Paper(&[PaperFigure::Fig3], 4.0)),
     ("paper-fig-4", Shown::Paper(&[PaperFigure::Fig4], 4.0)),
@@ -171,7 +174,7 @@ fn study() -> Vec<Command> {
 
 /// Opens a scenario, runs it to its end and shows it at `time`, s.
 fn opened(scenario: &str, time: f64) -> Result<AppState, Failure> {
-    let scenario = stillbase_files::scenario(scenario)?.scenario;
+    let scenario = stillbase_files::any_scenario(scenario)?.scenario;
     let mut app_state = AppState::new(scenario, Theme::Dark)?;
     let task_time = app_state.session().length();
     [Command::Session(SessionCommand::Seek(task_time)), Command::Session(SessionCommand::Seek(time))]

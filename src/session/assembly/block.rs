@@ -41,7 +41,16 @@ impl AssemblyBlock {
         task.scenario = scenario;
         (whole.name, whole.title, whole.summary) = (own.name.clone(), own.title.clone(), own.summary.clone());
         (whole.duration, whole.lead) = (own.duration, self.block);
+        whole.follow(self.block);
         whole
+    }
+
+    /// Returns this block of an assembly in which the bound block, if there is one, follows what `own` plans.
+    pub(crate) fn followed(self: &Arc<Self>, own: &Scenario) -> Arc<Self> {
+        match self.scenario.follower_of(self.block) {
+            Some(_) => Arc::new(Self { scenario: Arc::new(self.whole(own)), block: self.block }),
+            None => self.clone(),
+        }
     }
 
     /// Checks that an edit concerns what the block does: its machine and the base belong to the assembly.

@@ -36,6 +36,8 @@ pub struct AssemblyScenario {
     pub duration: Option<f64>,
     /// The block that the window leads first.
     pub lead: usize,
+    /// Two blocks with parallel planes of which one changes its b against the other's, so that the base feels no moment.
+    pub against: Option<[usize; 2]>,
 }
 
 /// What a block does.
@@ -67,6 +69,7 @@ struct File {
     #[serde(rename = "machine")]
     _machine: Value,
     lead: Option<String>,
+    against: Option<Vec<String>>,
     #[serde(default)]
     task: BTreeMap<String, Table>,
     /// Other settings of the scenarios of blocks, and their edits.
@@ -187,17 +190,25 @@ impl Reading<'_> {
                 "is free, but the assembly states gravity: want gravity = [0, 0, 0], as in orbit, or a fixed base";
             return Err(self.wrong(&["base", "kind"], said));
         }
-        Ok(AssemblyScenario {
+        let mut whole = AssemblyScenario {
             name: file.name.unwrap_or_else(|| plain(&stem).into_owned()),
             title: file.title,
             summary: file.summary,
-            assembly,
+            assembly: assembly.clone(),
             tasks,
             base,
             step,
             duration,
             lead,
-        })
+            against: None,
+        };
+        if let Some(pair) = &file.against {
+            let wrong = |said: String| self.wrong(&["against"], said);
+            let place = |name: &String| names.iter().position(|own| own == name).ok_or_else(|| wrong(unknown(name)));
+            let [one, other] = &pair[..] else { return Err(wrong("want the names of two blocks".into())) };
+            whole.bind([place(one)?, place(other)?]).map_err(wrong)?;
+        }
+        Ok(whole)
     }
 
     fn base(&self, base: &BaseInFile) -> Result<AssemblyBase, ScenarioError> {
@@ -332,6 +343,10 @@ impl AssemblyScenario {
         }
         file.insert("machine".into(), machine);
         file.insert("lead".into(), Value::String(self.assembly.blocks()[self.lead].name.clone()));
+        file.extend(self.against.map(|pair| {
+            let name = |i: usize| Value::String(self.assembly.blocks()[i].name.clone());
+            ("against".to_owned(), Value::Array(pair.map(name).into()))
+        }));
         file.insert("step".into(), Value::Float(self.step));
         file.extend(self.duration.map(|duration| ("duration".to_owned(), Value::Float(duration))));
         if let AssemblyBase::Free(SpatialBase { mass, com, inertia }) = &self.base {
@@ -389,7 +404,7 @@ impl AssemblyScenario {
         }
         let (name, summary) = (assembly.name.clone(), assembly.summary.clone());
         let (title, base, step) = (name.clone(), AssemblyBase::Fixed, USUAL_STEP);
-        Ok(Self { name, title, summary, assembly, tasks, base, step, duration: None, lead: 0 })
+        Ok(Self { name, title, summary, assembly, tasks, base, step, duration: None, lead: 0, against: None })
     }
 
     /// Returns whether it has no more steps than are simulated, for a duration, s.

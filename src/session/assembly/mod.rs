@@ -4,6 +4,7 @@
 //! of one machine. The blocks then follow their references without error; what they put on the base together is computed in
 //! space. Friction, feedback and payloads unknown to the model are left to scenarios of one machine.
 
+mod against;
 mod block;
 mod catalog;
 mod file;

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::against::against;
 use super::block::AssemblyBlock;
 use super::file::AssemblyBase;
 use super::run::{AssemblyFrame, AssemblyVerdict};
 use crate::changes::in_order;
-use crate::edit::TimedEdit;
+use crate::edit::{Edit, TimedEdit};
 use crate::refusal::Refusal;
 use crate::run::Run;
 use stillbase_mechanics::assembly::{Attitude, BlockState, MAX_BLOCKS};
@@ -29,6 +30,8 @@ pub struct SharedRun {
     verdict: AssemblyVerdict,
     /// Largest distance of the base from where it was, m.
     shift: f64,
+    /// The block whose b follows that of the block that is led, with `c` and `f` of b′ = c + f b.
+    bound: Option<(usize, [f64; 2])>,
 }
 
 /// A block that is not led, with the edits of its scenario.
@@ -117,6 +120,8 @@ impl SharedRun {
     /// If the task of a block cannot be planned.
     pub fn new(block: &Arc<AssemblyBlock>, led: &Frame, queries: &Queries) -> Result<Self, Refusal> {
         let others = queries.ask::<QuickWork<OtherBlocks>>(&ByIdentity(block.clone()));
+        let follower = block.scenario.follower_of(block.block);
+        let b_of = |i: usize| block.scenario.tasks[i].scenario.task.b;
         let none = PerDrive::zeros(0);
         let mut shared = Self {
             block: block.clone(),
@@ -126,6 +131,7 @@ impl SharedRun {
             com: Vector3::zeros(),
             verdict: AssemblyVerdict::default(),
             shift: 0.0,
+            bound: follower.map(|(i, factor)| (i, [b_of(i) - factor * led.b_reference, factor])),
         };
         shared.states = shared.states_with(led);
         if let AssemblyBase::Free(base) = &shared.block.scenario.base {
@@ -152,6 +158,30 @@ impl SharedRun {
             states[i] = state_of(&run.frame());
         }
         states
+    }
+
+    /// Applies to the bound block what an edit of b asks of it.
+    ///
+    /// # Errors
+    /// If it cannot follow as fast.
+    pub fn follow(&mut self, edit: &Edit) -> Result<(), Refusal> {
+        let Some((i, [relation, factor])) = self.bound else { return Ok(()) };
+        let Some(edit) = against(edit, relation, factor) else { return Ok(()) };
+        let name = &self.block.scenario.assembly.blocks()[i].name;
+        let Some(other) = self.others.get_mut(i).and_then(Option::as_mut) else { return Ok(()) };
+        other
+            .run
+            .apply(&edit)
+            .map_err(|why| Refusal::Task(format!("block {name}, whose b is bound to this one: {why}")))?;
+        let (wanted, bound) = (other.run.scenario().pose_acceleration, other.run.pose_bound().unwrap_or(f64::INFINITY));
+        if bound < wanted * (1.0 - 1e-9) {
+            let most = bound / factor.abs();
+            return Err(Refusal::Task(format!(
+                "block {name}, whose b is bound to this one, cannot follow as fast: want pose_acceleration of at most \
+                 {most:.4} rad/s²"
+            )));
+        }
+        Ok(())
     }
 
     /// Advances the other blocks by a step; `led` is the frame after it of the block that is led.

@@ -1,0 +1,113 @@
+//! Blocks of an assembly in the window: one is led, all are seen.
+
+use egui_kittest::kittest::Queryable as _;
+use stillbase::app::{PictureOrder, SessionCommand, Shot, ViewChange};
+use stillbase::picture::scene::palette::Theme;
+use stillbase::picture::scene::views::ViewKind;
+use stillbase::session::scenario::Scenario;
+
+use super::{Window, drag, session, window_of};
+use crate::Test;
+
+pub const TESTS: &[Test] = tests![
+    all_blocks_are_seen_and_one_is_led,
+    the_hand_leads_a_block_in_its_own_plane,
+    another_block_is_led_and_taken_back,
+    what_belongs_to_the_assembly_is_not_offered,
+];
+
+fn opened(name: &str) -> Window {
+    let found = stillbase::files::any_scenario(name).expect("built in");
+    let mut h = window_of(found.scenario, Theme::Dark, 900.0);
+    h.run_steps(3);
+    h
+}
+
+/// Names of the blocks, and of the items of each, in the scene on display.
+fn items(h: &mut Window) -> Vec<String> {
+    let order = PictureOrder::new(Shot::Scene, Theme::Dark, [800, 600]);
+    let (scene, _) = order.scene(h.state_mut().app_state_mut());
+    assert!(scene.solids.iter().all(|solid| solid.mesh < scene.model.meshes.len()));
+    let solids = scene.solids.iter().map(|solid| solid.name.to_string());
+    let lines = scene.lines.iter().map(|line| line.name.to_string());
+    let words = scene.labels.iter().map(|label| label.text.clone());
+    solids.chain(lines).chain(words).collect()
+}
+
+fn all_blocks_are_seen_and_one_is_led() {
+    let mut h = opened("four-freedoms");
+    assert_eq!(h.state().app_state().view_state().view, ViewKind::Space);
+    let seen = items(&mut h);
+    for name in ["machine/link/1", "wrist/machine/link/1", "wrist/workspace/boundary", "carrier", "wrist"] {
+        assert!(seen.iter().any(|own| own == name), "{name} is missing in {seen:?}");
+    }
+    // The wrist stands on the carrier, so it has no base of its own; what the carrier alone does is not drawn.
+    assert!(!seen.iter().any(|name| name.starts_with("wrist/machine/base") || name.starts_with("reaction")));
+    assert!(h.query_by_label_contains("Base moment").is_some() && h.query_by_label_contains("Base force").is_some());
+    // Off its pin the base feels a moment, which is drawn; a spacecraft has a body.
+    let mut h = opened("off-its-pin");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(0.5));
+    h.run_steps(2);
+    assert!(items(&mut h).iter().any(|name| name == "reaction/moment"));
+    let mut h = opened("arm-against-arm");
+    assert!(items(&mut h).iter().any(|name| name == "base"));
+    assert!(h.query_by_label_contains("Base attitude").is_some());
+}
+
+/// A drag of the target leads the wrist in its plane across, which is not that of the world.
+fn the_hand_leads_a_block_in_its_own_plane() {
+    let mut h = opened("four-freedoms");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Lead(0));
+    h.run_steps(2);
+    let place = |h: &Window, at: [f64; 2]| {
+        let rect = h.get_by_label_contains("Scene:").rect();
+        let app_state = h.state().app_state();
+        let aspect = f64::from(rect.width() / rect.height());
+        let z = app_state.stage().handle_height();
+        // The carrier stands at the origin, its plane that of the world.
+        let [u, v] = app_state.view_state().camera().project([at[0], at[1], z], aspect).expect("seen");
+        rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
+    };
+    let from = session(&h).frame().end_effector;
+    let to = [from.re - 0.03, from.im + 0.04];
+    let [a, b] = [[from.re, from.im], to].map(|at| place(&h, at));
+    drag(&mut h, a, b);
+    let target = session(&h).frame().target.at;
+    assert!((target.re - to[0]).hypot(target.im - to[1]) < 5e-3, "{target} for {to:?}");
+    assert!(session(&h).is_dragged());
+}
+
+fn another_block_is_led_and_taken_back() {
+    let mut h = opened("four-freedoms");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(0.7));
+    h.run_steps(2);
+    let shared = |h: &Window| session(h).frame().shared.expect("shared").loads.motion.components();
+    let (name, before) = (|h: &Window| session(h).scenario().machine.name().to_owned(), shared(&h));
+    assert_eq!(name(&h), "carrier");
+    h.get_by_label("Block").click();
+    h.run_steps(2);
+    h.get_by_label_contains("wrist · wrist").click();
+    h.run_steps(3);
+    assert_eq!((name(&h), session(&h).frame().time), ("wrist".to_owned(), 0.7));
+    let scale = session(&h).frame().shared.expect("shared").scale[0];
+    for (a, b) in before.iter().zip(shared(&h)) {
+        assert!((a - b).abs() < 1e-7 * scale, "{a} {b}");
+    }
+    assert!(items(&mut h).iter().any(|name| name == "carrier/machine/link/1"));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Undo);
+    h.run_steps(3);
+    assert_eq!(name(&h), "carrier");
+    // In 2D the block stands alone in its plane.
+    h.state_mut().app_state_mut().carry_out(ViewChange::Kind(ViewKind::Flat));
+    h.run_steps(2);
+    assert!(!items(&mut h).iter().any(|name| name.starts_with("wrist/")));
+}
+
+fn what_belongs_to_the_assembly_is_not_offered() {
+    let h = opened("two-arms");
+    for section in ["Plant section", "Base section"] {
+        assert!(h.query_by_label(section).is_none(), "{section}");
+    }
+    let h = window_of(Scenario::builtin("case-3").expect("built in"), Theme::Dark, 900.0);
+    assert!(h.query_by_label("Block").is_none(), "a machine by itself");
+}
