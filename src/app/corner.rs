@@ -17,13 +17,20 @@ pub fn strip(rect: Rect) -> Rect {
 }
 
 /// Draws the hint or the colour scale, and the grid width.
-pub fn show(ui: &mut Ui, rect: Rect, view_state: &ViewState, views: &Views, commands: &mut Vec<Command>) {
+pub fn show(
+    ui: &mut Ui,
+    rect: Rect,
+    view_state: &ViewState,
+    (views, has_grid): (&Views, bool),
+    commands: &mut Vec<Command>,
+) {
     let p = view_state.palette();
     let low = rect.bottom() - 16.0;
+    let width = if has_grid { views.grid(view_state.view) } else { String::new() };
     let grid = ui.painter().text(
         pos2(rect.right() - 14.0, low),
         Align2::RIGHT_CENTER,
-        view_state.notation().sentence(&views.grid(view_state.view)),
+        view_state.notation().sentence(&width),
         plain(11.5),
         colour(p.dim),
     );

@@ -64,7 +64,10 @@ impl<'a> SceneContent<'a> {
     fn points(&self, view: ViewKind) -> ViewContent {
         let (session, own) = (self.session, self.views.content(view, self.session.frame(), &motion(self.session)));
         match self.blocks_in(view) {
-            Some(blocks) => blocks.content(own, session.frame(), session.others()),
+            Some(blocks) => {
+                let floor = self.views.stage().linkage().floor();
+                blocks.content((own, floor), session.frame(), session.others())
+            }
             None => own,
         }
     }
@@ -177,7 +180,8 @@ pub fn show(ui: &mut Ui, content: SceneContent<'_>, view_state: &mut ViewState, 
         covered.extend(is_partly_out.then(|| corner::recentre_covers(rect)));
         let placed = draw_labels(ui, 0, &spot, &scene, &covered);
         notes::labels(ui, &placed.all, session, &view_state.tool, commands);
-        corner::show(ui, rect, view_state, views, commands);
+        let has_grid = content.blocks_in(view_state.view).is_none();
+        corner::show(ui, rect, view_state, (views, has_grid), commands);
         coordinates::show(ui, rect, session, views, view_state, commands);
         if is_partly_out {
             corner::recentre_button(ui, rect, view_state, commands);

@@ -200,7 +200,7 @@ const SHARED_MOMENT: Chart = Chart {
 };
 const SHARED_ATTITUDE: Chart = Chart {
     title: "Base attitude",
-    unit: "1",
+    unit: "",
     signals: &["attitude/base_x", "attitude/base_y", "attitude/base_z"],
     min_range: 1e-4,
     ..EMPTY_CHART

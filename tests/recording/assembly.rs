@@ -80,7 +80,10 @@ fn blocks_are_recorded_where_they_are() {
             seen += 1;
         }
         assert!(seen > 20);
-        assert_eq!(contents.texts(&format!("/{name}/notes"), "TextDocument:text")[0].lines().next(), Some(format!("# {}", run.scenario().title).as_str()));
+        assert_eq!(
+            contents.texts(&format!("/{name}/notes"), "TextDocument:text")[0].lines().next(),
+            Some(format!("# {}", run.scenario().title).as_str())
+        );
         // The same again, but for when it was written; and nothing is replaced or left behind.
         let again = folder.path("again.rrd");
         record_assembly(&run, (&again, true), &|| true).expect("recorded");

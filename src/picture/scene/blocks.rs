@@ -235,25 +235,34 @@ impl BlockStages {
         }
     }
 
-    /// Returns the points that the camera has to show; `own` are those of the led block by itself.
+    /// Returns the points that the camera has to show; `own` are those of the led block by itself, with the
+    /// height of its floor, m.
     pub fn content<'a>(
         &self,
-        own: ViewContent,
+        (own, floor): (ViewContent, f64),
         led: &Frame,
         others: impl Iterator<Item = (usize, &'a Frame)> + Clone,
     ) -> ViewContent {
         let places = self.places(led, others.clone());
-        let moved = |points: Vec<[f64; 3]>, i: usize| {
+        // What lies below a point is seen, too: bodies have heights.
+        let moved = |points: Vec<[f64; 3]>, i: usize, floor: f64| {
             let place = places[i];
-            points.into_iter().map(move |point| place.transform_point(&point.into()).into())
+            let both = points.into_iter().flat_map(move |[x, y, z]| [[x, y, z], [x, y, floor]]);
+            both.map(move |point| place.transform_point(&point.into()).into())
         };
         let own_place = self.block.block;
-        let mut first: Vec<[f64; 3]> = moved(own.first, own_place).collect();
+        let mut first: Vec<[f64; 3]> = moved(own.first, own_place, floor).collect();
         for (i, frame) in others {
             let Some((.., stage)) = self.others.iter().find(|(of, ..)| *of == i) else { continue };
-            first.extend(moved(stage.content(frame, &[]).first, i));
+            first.extend(moved(stage.content(frame, &[]).first, i, stage.linkage().floor()));
         }
-        ViewContent { first, then: moved(own.then, own_place).collect() }
+        if let Some((_, pose)) = &self.body {
+            let base = led.shared.as_ref().map_or_else(Matrix4::identity, base_place) * pose;
+            let corners = self.model.meshes.last().map_or(&[][..], |mesh| &mesh.positions);
+            let corners = corners.iter().map(|p| base.transform_point(&Point3::from(p.map(f64::from))));
+            first.extend(corners.map(<[f64; 3]>::from));
+        }
+        ViewContent { first, then: moved(own.then, own_place, floor).collect() }
     }
 }
 

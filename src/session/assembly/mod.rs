@@ -1,8 +1,12 @@
 //! Scenarios of assemblies: each block has a task of its own, and all share one base.
 //!
 //! A block is planned as a machine by itself that holds what it carries, so tasks, time laws, limits and refusals are those
-//! of one machine. The blocks then follow their references without error; what they put on the base together is computed in
-//! space. Friction, feedback and payloads unknown to the model are left to scenarios of one machine.
+//! of one machine. What the blocks put on the base together is computed in space.
+//!
+//! An [`AssemblyRun`] follows the references of all blocks without error, but where a scenario has edits or other control.
+//! The window leads one block: its [`Scenario`](crate::scenario::Scenario) holds the [`AssemblyBlock`], and its
+//! [`Run`](crate::Run) takes the others along, step by step. Friction, and payloads unknown to the model, are left to
+//! scenarios of one machine.
 
 mod against;
 mod block;
