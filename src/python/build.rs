@@ -1,8 +1,9 @@
 //! Has the linker keep one of several equal functions, if it can: the package is 2 % smaller.
 
+use std::env;
+use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
-use std::{env, fs};
 
 const OPTION: &str = "-Wl,--icf=all";
 

@@ -252,7 +252,7 @@ fn a_front_runs_from_light_to_quick() {
     let bare = family_machine("nine-link-bare");
     let points = front(&bare, &weighing(&bare, Objective::mass()), 25).expect("it can be balanced").measures();
     assert_eq!(points.len(), 25);
-    assert!((points[0][0] - 9.572_666_7).abs() < 1e-4 && (points[24][1] - 1.798_401_1).abs() < 1e-6);
+    assert!((points[0][0] - 9.572_666_7).abs() < 1e-4 && (points[24][1] - 1.798_401_1).abs() < 4e-6);
     for pair in points.windows(2) {
         assert!(pair[1][0] > pair[0][0] && pair[1][1] < pair[0][1], "{pair:?}");
     }

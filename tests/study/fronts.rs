@@ -121,7 +121,7 @@ fn a_front_on_bars_keeps_the_bars() {
         let points = &measured.front.points;
         assert_eq!(points.len(), COUNT);
         // On these bars, the lightest counterweights are those of the machine as it is cut.
-        assert!((points[0].added_mass - cut.placed.added_mass).abs() < 1e-6, "{}", points[0].added_mass);
+        assert!((points[0].added_mass - cut.placed.added_mass).abs() < 1e-5, "{}", points[0].added_mass);
         for placed in points {
             assert!(Inertia::of(&placed.machine).is_balanced());
             assert_eq!(placed.machine.spec().parts, cut.bars.spec().parts);
