@@ -356,6 +356,7 @@ impl AppState {
         let (run, queries) = (self.session.run(), self.queries());
         let made = Views::base_views(queries, run, None);
         let views = Views::completed(&made, queries, run, Some(self.view_state.drives));
+        let had_others = self.blocks.is_some();
         match self.blocks.take().filter(|blocks| blocks.is_of(run)) {
             Some(mut blocks) => {
                 blocks.join(views.stage());
@@ -363,7 +364,9 @@ impl AppState {
             }
             None => {
                 self.blocks = BlockStages::of(run, views.stage());
-                self.view_state.framing.iter_mut().for_each(Framing::renew);
+                if had_others || self.blocks.is_some() {
+                    self.view_state.framing.iter_mut().for_each(Framing::renew);
+                }
             }
         }
         if Arc::ptr_eq(&views, &self.views) {

@@ -16,6 +16,9 @@ pub const TESTS: &[Test] = tests![
     tolerances_is_current,
     tower_is_current,
     joints_is_current,
+    assembly_is_current,
+    assembly_wrist_is_current,
+    assembly_off_its_pin_is_current,
     design_is_current,
     draw_is_current,
     workshop_is_current,
@@ -133,6 +136,18 @@ fn paper_fig_5_is_current() {
 
 fn joints_is_current() {
     is_current("joints");
+}
+
+fn assembly_is_current() {
+    is_current("assembly");
+}
+
+fn assembly_wrist_is_current() {
+    is_current("assembly-wrist");
+}
+
+fn assembly_off_its_pin_is_current() {
+    is_current("assembly-off-its-pin");
 }
 
 /// The pictures that are kept are those that can be drawn, and those that are compared above.
