@@ -164,7 +164,8 @@ impl<'a> ScenarioFacts<'a> {
         // With several shapes for each point the search takes longer than a repaint.
         let ways_out = |missed| queries.ask_in_background::<QuickWork<TargetProposals>>(&missed).known().cloned();
         Self {
-            machine_differs: stated.map_or(differs.machine, |stated| stated.machine != scenario.0.machine),
+            machine_differs: scenario.0.assembly.is_none()
+                && stated.map_or(differs.machine, |stated| stated.machine != scenario.0.machine),
             work_differs: differs.work && stated.is_none_or(|stated| !same_work(stated, &scenario.0)),
             price: balance.pose_inertia * scenario.0.pose_acceleration,
             balance,

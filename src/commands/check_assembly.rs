@@ -32,9 +32,9 @@ fn text(assembly: &Assembly, report: &AssemblyReport) -> String {
         false => "reacts even while every block holds its b",
     };
     let mut text = format!(
-        "{} · {}\n\nassembly         {verdict}\nmass             {} kg\n\n{blocks}\nlargest residuals, with what each block carries\n\n{left}",
+        "{}{}\n\nassembly         {verdict}\nmass             {} kg\n\n{blocks}\nlargest residuals, with what each block carries\n\n{left}",
         assembly.name,
-        assembly.summary,
+        if assembly.summary.is_empty() { String::new() } else { format!(" · {}", assembly.summary) },
         fixed(report.mass, 3)
     );
     for of in &report.blocks {

@@ -94,8 +94,16 @@ impl Failure {
             _ => proposals_while(scenario, &refusal, &mut |_| goes_on()),
         };
         let Some(proposals) = proposals else { return Self::Stopped };
-        let failure = Self::from(refusal).with_context(&scenario.name);
-        Self::Refused(Box::new(RefusedScenario::of(failure, proposals)))
+        // A refusal of another block names it already.
+        let is_of_other = refusal.to_string().starts_with("block ");
+        let of_block = scenario.assembly.as_ref().filter(|_| !is_of_other);
+        let context = of_block.map_or(scenario.name.as_str(), |block| block.name());
+        let failure = Self::from(refusal).with_context(context);
+        let refused = Self::Refused(Box::new(RefusedScenario::of(failure, proposals)));
+        match of_block {
+            Some(block) => refused.of_block(block.name()),
+            None => refused,
+        }
     }
 
     /// Returns the failure of one of several blocks: ways out are keys of the block. Those that change what it holds, or

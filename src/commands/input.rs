@@ -299,18 +299,24 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
     Ok(found)
 }
 
-/// Returns the scenario of an assembly that a file holds, with settings changed; `None` for anything else. Settings are
-/// those of the file, as `task.wrist.b`, or of a block, as `wrist.payload.mass`.
+/// Returns the scenario of an assembly that a file holds, with settings changed; `None` for anything else. For an assembly
+/// by itself, makes a motion for each block. Settings are those of the file, as `task.wrist.b`, or of a block, as
+/// `wrist.payload.mass`.
 ///
 /// # Errors
 /// If the file, its assembly or a setting is wrong.
 pub fn assembly_scenario(name: &str, settings: &Settings) -> Result<Option<AssemblyScenario>, Failure> {
-    let is_of_file = |key: &str| {
-        ["task", "base", "step", "duration", "lead", "scenario"].contains(&key.split('.').next().unwrap_or(key))
-    };
+    const OF_FILE: [&str; 7] = ["task", "base", "step", "duration", "lead", "scenario", "against"];
+    let is_of_file = |key: &str| OF_FILE.contains(&key.split('.').next().unwrap_or(key));
     let [of_file, of_blocks] = [true, false].map(|wanted| settings.of_keys(|key| is_of_file(key) == wanted));
     let apply = |assembly| of_blocks.apply_to_assembly(assembly);
-    stillbase_files::assembly_scenario(name, &of_file.change(), apply)
+    if let Some(found) = stillbase_files::assembly_scenario(name, &of_file.change(), apply)? {
+        return Ok(Some(found));
+    }
+    let Some(assembly) = stillbase_files::assembly(name)? else { return Ok(None) };
+    let made = AssemblyScenario::for_assembly(apply(assembly)?)?;
+    print_message(format!("note: {name}: a motion was made for each block of the assembly"));
+    Ok(Some(made.with_changes(&of_file.change(), name)?))
 }
 
 /// Returns a scenario by name or file, with settings changed, whose base floats.
@@ -427,15 +433,10 @@ pub fn overlay_for_study(name: &str, settings: &Settings) -> Result<Scenario, Fa
 /// As [`overlay_for_study`], and if the scenario of an assembly is wrong.
 #[cfg(feature = "ui")]
 pub fn overlay_of_any(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
-    if let Some(whole) = assembly_scenario(name, settings)? {
-        return Ok(whole.leading(whole.lead));
+    match assembly_scenario(name, settings)? {
+        Some(whole) => Ok(whole.leading(whole.lead)),
+        None => overlay_for_study(name, settings),
     }
-    if !settings.is_empty() || stillbase_files::assembly(name)?.is_none() {
-        return overlay_for_study(name, settings);
-    }
-    let found = stillbase_files::any_scenario(name)?;
-    found.note.iter().for_each(|note| print_message(format!("note: {name}: {note}")));
-    Ok(found.scenario)
 }
 
 /// Does the same as [`overlay_for_study`], but accepts settings without an effect: other arguments may give them one.

@@ -12,22 +12,21 @@ use stillbase_exchange::import::{ImportedMachine, faults, import};
 use stillbase_mechanics::assembly::{self, Assembly, builtin_assemblies};
 use stillbase_mechanics::machine::{self, FileError, Machine, MachineError};
 use stillbase_mechanics::sketch::Template;
-use stillbase_session::assembly::{AssemblyScenario, builtin_scenario_text};
+use stillbase_session::assembly::{AssemblyScenario, builtin_assembly_scenarios, builtin_scenario_text, changed_keys};
 use stillbase_session::gentle_motion;
 use stillbase_session::scenario::{DesignBrief, FileContent, MachineFile, Scenario, ScenarioError, TaskKind, content};
 use stillbase_session::with_start_edits;
-use stillbase_settings::change;
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
 use stillbase_simulation::plant::{Base, BaseKind};
 
-const IS_ASSEMBLY: &str =
-    "this is an assembly of several machines: want one machine; check, dynamics and simulate take an assembly, too";
+const IS_ASSEMBLY: &str = "this is an assembly of several machines: want one machine; the window, check, dynamics, simulate, headless, render and \
+     export-model take an assembly, too";
 
-const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; simulate and \
-                              headless take this one, too";
+const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; the window, \
+                              simulate, headless, render and export-model take this one, too";
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
@@ -96,6 +95,9 @@ fn found(name: &str, folder: Option<&Path>, takes_scenarios: bool) -> Result<Fou
     }
     if builtin_assemblies().iter().any(|own| own.name == name) {
         return Err(wrong_file(name, Faults::one(whole_file(IS_ASSEMBLY))));
+    }
+    if builtin_scenario_text(name).is_some() {
+        return Err(wrong_file(name, Faults::one(whole_file(IS_OF_ASSEMBLY))));
     }
     let file = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let other = |file: String| wrong_file(&file, Faults::one(whole_file(IS_SCENARIO)));
@@ -183,7 +185,7 @@ pub fn assembly_scenario<E: From<ScenarioError>>(
     let Some(found) = found.map_err(ScenarioError::from)? else { return Ok(None) };
     let assembly = apply(found)?;
     // With settings, lines are no longer those of the file.
-    let text = if change.is_empty() { text } else { change::join(table, change).to_string() };
+    let text = if change.is_empty() { text } else { changed_keys(table, change).to_string() };
     Ok(Some(AssemblyScenario::parse(&text, &shortened(label(name), 300), assembly)?))
 }
 
@@ -273,6 +275,9 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if builtin_scenario_text(name).is_some() {
         return Err(wrong_file(name, Faults::one(whole_file(IS_OF_ASSEMBLY))).into());
     }
+    if builtin_assemblies().iter().any(|own| own.name == name) {
+        return Err(wrong_file(name, Faults::one(whole_file(IS_ASSEMBLY))).into());
+    }
     let file = Path::new(name);
     let text = match read(file) {
         Ok(text) => text,
@@ -282,12 +287,21 @@ pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
                 None => {
                     let builtin = machine::builtins().iter().map(Machine::name);
                     let machines: Vec<&str> = builtin.chain(Template::ALL.map(Template::word)).collect();
-                    Err(UnknownName::new(name, "scenario", Scenario::builtin_names().collect(), &machines).into())
+                    Err(UnknownName::new(
+                        name,
+                        "scenario",
+                        Scenario::builtin_names().chain(builtin_assembly_scenarios()).collect(),
+                        &machines,
+                    )
+                    .into())
                 }
             };
         }
         Err(source) => return Err(ScenarioError::Unreadable { file: shortened(name, 300), source }),
     };
+    if assembly_scenario::<ScenarioError>(name, &toml::Table::new(), Ok)?.is_some() {
+        return Err(wrong_file(name, Faults::one(whole_file(IS_OF_ASSEMBLY))).into());
+    }
     let name = label(name);
     if is_model(&text) {
         let ImportedMachine { machine, base, floats, notes, .. } = model(&text, name)?;

@@ -189,7 +189,7 @@ const SHARED_FORCE: Chart = Chart {
     title: "Base force",
     unit: "N",
     signals: &["force/dynamic_x", "force/dynamic_y", "force/dynamic_z"],
-    min_range: 0.5,
+    min_range: 2e-3,
     ..EMPTY_CHART
 };
 const SHARED_MOMENT: Chart = Chart {

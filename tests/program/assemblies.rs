@@ -110,7 +110,7 @@ fn blocks_follow_tasks_of_their_own() {
     );
     for (args, words) in [
         (&["design", "carrier-and-wrist"][..], "want one machine"),
-        (&["spectrum", "four-freedoms"], "simulate and headless take this one"),
+        (&["spectrum", "four-freedoms"], "render and export-model take this one"),
         (&["headless", "case-1", "four-freedoms", "-o", "x.rrd"], "recorded by itself"),
         (&["simulate", "four-freedoms", "--signals", "nothing"], "no signal \"nothing\""),
         (&["simulate", "four-freedoms", "--set", "task.elbow.b=1"], "no block \"elbow\""),
@@ -175,4 +175,63 @@ fn assemblies_go_out_as_models() {
     ] {
         fails(&[&["export-model"], args].concat(), 2, &[words]);
     }
+}
+
+fn refuses(words: &[&str], said: &str) {
+    fails(words, 2, &[said]);
+}
+
+/// An assembly by itself does a small motion; keys are removed with `default`, and two blocks bound on the command line.
+#[test]
+fn assemblies_are_simulated_alone_and_with_settings() {
+    for name in ["carrier-and-wrist", "two-arms"] {
+        let found = object(&["simulate", name]);
+        assert_eq!(found["verdict"]["silent_moment"], json!([true, true, true]), "{name}");
+    }
+    let longer = object(&["simulate", "two-arms", "--set", "duration=3"]);
+    let time = longer["time"].as_array().expect("a list");
+    assert_eq!(time.last(), Some(&json!(3.0)));
+    // One arm does not change its b: the base turns; then bound to the other, it follows.
+    let alone = ["--set", "task.right.b_to=1.9"];
+    let turn = |more: &[&str]| {
+        let found = object(&[&["simulate", "arm-against-arm"], more].concat());
+        found["verdict"]["base_angle"].as_f64().expect("a number")
+    };
+    assert!(turn(&alone) > 1e-3 && turn(&[&alone[..], &["--set", "against=left,right"]].concat()) < 1e-9);
+    assert!(turn(&["--set", "task.left.b_to=2.0", "--set", "against=left,right"]) < 1e-9);
+    let free = ["--set", "task.right.kind=reactionless", "--set", "task.right.b_to=default"];
+    assert!(turn(&free) > 1e-3);
+    for (words, said) in [
+        (["--set", "against=left"], "want the names of two blocks"),
+        (["--set", "against=left,middle"], "no block \"middle\""),
+        (["--set", "against=left,left"], "left stands there twice"),
+        (["--set", "lead=3"], "want the name of a block"),
+    ] {
+        refuses(&[&["simulate", "arm-against-arm"], &words[..]].concat(), said);
+    }
+}
+
+/// What takes one machine says that it got several.
+#[test]
+fn commands_for_one_machine_say_that_there_are_several() {
+    let folder = Folder::new("assemblies");
+    let own = word(folder.file("own.toml", prints(&["machines", "two-arms"])));
+    let led = folder.file(
+        "led.toml",
+        "machine = \"own.toml\"\n[task.left]\nkind = \"reactionless\"\nb = 2.2\nfrom = [0.5, 0.5]\nto = [0.4, 0.6]\n\
+         [task.right]\nkind = \"reactionless\"\nb = 2.2\nfrom = [0.5, 0.5]\nto = [0.4, 0.6]\n"
+            .to_owned(),
+    );
+    let led = word(led);
+    assert_eq!(object(&["simulate", &led])["verdict"]["silent_force"], json!([true, true, true]));
+    for command in ["joints", "spectrum", "plan"] {
+        refuses(&[command, "carrier-and-wrist"], "this is an assembly of several machines");
+        refuses(&[command, "four-freedoms"], "this is a scenario of an assembly");
+        refuses(&[command, &led], "this is a scenario of an assembly");
+    }
+    for command in ["design", "layers"] {
+        refuses(&[command, &own], "this is an assembly of several machines");
+        refuses(&[command, "four-freedoms"], "this is a scenario of an assembly");
+    }
+    refuses(&["simulate", "nowhere"], "arm-against-arm");
 }

@@ -43,8 +43,6 @@ const ARROW_SHARE: f64 = 0.5;
 const HEAD: [f64; 2] = [0.16, 0.06];
 /// Opacity of the body of a base that floats.
 const BODY_OPACITY: f32 = 0.14;
-/// Opacity of workspaces of blocks that are not led.
-const OTHER_OPACITY: f32 = 0.6;
 
 fn is_part(name: &str, of: &str) -> bool {
     name.strip_prefix(of).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
@@ -187,7 +185,9 @@ impl BlockStages {
             let Some((_, first, stage)) = self.others.iter().find(|(of, ..)| *of == i) else { continue };
             let mut other = stage.scene(frame, &plain);
             other.retain(|name| keeps(i, name) && SHOWN.iter().any(|of| is_part(name, of)));
-            other.areas.iter_mut().for_each(|area| area.colour = faded(area.colour, area.colour[3] * OTHER_OPACITY));
+            // Of workspaces that are not at hand, the boundary is enough.
+            other.areas.clear();
+            other.solids.retain(|solid| !is_part(&solid.name, "workspace"));
             scene.add(other.moved(&places[i]), &blocks[i].name, *first);
         }
         if let (Some((_, pose)), Some(shared)) = (&self.body, &led.shared) {

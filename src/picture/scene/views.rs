@@ -309,6 +309,12 @@ impl Views {
     /// # Errors
     /// If it does not; the text gives the reason.
     pub fn has(kind: ViewKind, run: &Run) -> Result<(), String> {
+        if let (ViewKind::Design, Some(shared)) = (kind, run.shared()) {
+            let (name, whole) = (shared.block().name(), &shared.block().scenario.assembly.name);
+            return Err(format!(
+                "{name} is a block of the assembly {whole}: its machine is changed in the assembly's file"
+            ));
+        }
         if kind.shows_machine() || kind == ViewKind::Design {
             return Ok(());
         }

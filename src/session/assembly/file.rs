@@ -10,6 +10,7 @@ use crate::gentle_motion::gentle_motion;
 use crate::scenario::{Scenario, ScenarioError};
 use stillbase_mechanics::assembly::{Assembly, SpatialBase, builtin_assemblies};
 use stillbase_mechanics::machine::{KeyPath, Machine, Payload};
+use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::range::{MAX_SAID, quote_clipped, shortened};
 use stillbase_settings::stated::StatedFile;
@@ -68,8 +69,8 @@ struct File {
     summary: String,
     #[serde(rename = "machine")]
     _machine: Value,
-    lead: Option<String>,
-    against: Option<Vec<String>>,
+    lead: Option<Value>,
+    against: Option<Value>,
     #[serde(default)]
     task: BTreeMap<String, Table>,
     /// Other settings of the scenarios of blocks, and their edits.
@@ -160,7 +161,9 @@ impl Reading<'_> {
         }
         let lead = match &file.lead {
             Some(name) => {
-                names.iter().position(|own| own == name).ok_or_else(|| self.wrong(&["lead"], unknown(name)))?
+                let name =
+                    name.as_str().ok_or_else(|| self.wrong(&["lead"], "want the name of a block, as \"arm\""))?;
+                names.iter().position(|own| *own == name).ok_or_else(|| self.wrong(&["lead"], unknown(name)))?
             }
             None => 0,
         };
@@ -204,8 +207,15 @@ impl Reading<'_> {
         };
         if let Some(pair) = &file.against {
             let wrong = |said: String| self.wrong(&["against"], said);
-            let place = |name: &String| names.iter().position(|own| own == name).ok_or_else(|| wrong(unknown(name)));
-            let [one, other] = &pair[..] else { return Err(wrong("want the names of two blocks".into())) };
+            let place = |name: &str| names.iter().position(|own| *own == name).ok_or_else(|| wrong(unknown(name)));
+            // On the command line a list is words with commas between them.
+            let pair: Vec<&str> = match pair {
+                Value::String(words) => words.split(',').map(str::trim).collect(),
+                Value::Array(list) => list.iter().filter_map(Value::as_str).collect(),
+                _ => Vec::new(),
+            };
+            let want = || wrong("want the names of two blocks, as [\"left\", \"right\"]".into());
+            let [one, other] = pair[..] else { return Err(want()) };
             whole.bind([place(one)?, place(other)?]).map_err(wrong)?;
         }
         Ok(whole)
@@ -315,6 +325,17 @@ const USUAL_STEP: f64 = 1e-3;
 const REST_SAMPLES: u32 = 7;
 const REST_INTERVAL_S: f64 = 0.01;
 
+/// Returns the keys of a file with some of them changed; the word `default` removes a key.
+pub fn changed_keys(stated: Table, wanted: &Table) -> Table {
+    fn without_defaults(table: &mut Table) {
+        table.retain(|_, value| value.as_str() != Some(DEFAULT_WORD));
+        table.iter_mut().filter_map(|(_, value)| value.as_table_mut()).for_each(without_defaults);
+    }
+    let mut all = change::join(stated, wanted);
+    without_defaults(&mut all);
+    all
+}
+
 /// Returns the task of a block that rests in a pose, rad.
 fn resting(pose: &[f64]) -> Table {
     let row = |i: u32| {
@@ -405,6 +426,18 @@ impl AssemblyScenario {
         let (name, summary) = (assembly.name.clone(), assembly.summary.clone());
         let (title, base, step) = (name.clone(), AssemblyBase::Fixed, USUAL_STEP);
         Ok(Self { name, title, summary, assembly, tasks, base, step, duration: None, lead: 0, against: None })
+    }
+
+    /// Returns the scenario with keys of its file changed; the word `default` removes one. Errors name `label`.
+    ///
+    /// # Errors
+    /// If a key or value is wrong.
+    pub fn with_changes(self, change: &Table, label: &str) -> Result<Self, ScenarioError> {
+        if change.is_empty() {
+            return Ok(self);
+        }
+        let stated: Table = self.to_toml().parse().unwrap_or_default();
+        Self::parse(&changed_keys(stated, change).to_string(), label, self.assembly)
     }
 
     /// Returns whether it has no more steps than are simulated, for a duration, s.

@@ -18,7 +18,7 @@ mod signals;
 
 pub use block::AssemblyBlock;
 pub use catalog::{builtin_assembly_scenarios, builtin_scenario_text};
-pub use file::{AssemblyBase, AssemblyScenario, BlockTask};
+pub use file::{AssemblyBase, AssemblyScenario, BlockTask, changed_keys};
 pub use run::{AssemblyFrame, AssemblyRun, AssemblyVerdict};
 pub use shared::SharedRun;
 pub use signals::{AssemblySignal, assembly_signals};

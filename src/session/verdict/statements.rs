@@ -21,6 +21,7 @@ use serde::Serialize;
 use super::{Attitude, Verdict, peaks_of};
 use crate::Run;
 use crate::scenario::{TaskKind, UnfinishedDrawing};
+use stillbase_mechanics::assembly::{BlockConditions, Reacting};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_settings::number::significant;
 use stillbase_simulation::Guide;
@@ -99,6 +100,19 @@ impl Statement {
                 )
             }
         }
+    }
+
+    /// States what keeps a balanced block of an assembly from being silent; `None` if nothing does.
+    fn of_block(conditions: &BlockConditions) -> Option<Self> {
+        let reasons: Vec<Reacting> = conditions.reasons().collect();
+        let words = match (reasons.contains(&Reacting::Ground), reasons.contains(&Reacting::Tilt)) {
+            (true, _) => "carries something off its end effector",
+            (false, true) => "has heights that tilt the base",
+            (false, false) => return None,
+        };
+        let [ground, tilt] = [conditions.ground, conditions.tilt].map(significant);
+        let why = format!("largest |C_0k| {ground} kg m², largest |Σ m h a_k| {tilt} kg m²: both have to be 0");
+        Some(Self::new(StatusLight::Bad, words, why))
     }
 
     /// States whether the planned or dragged motion of a run holds b.
@@ -384,7 +398,11 @@ impl Statements {
         if let Some(unfinished) = run.unfinished() {
             return Self::of_drawing(unfinished);
         }
-        let machine = Statement::clone(&of_moving_machine(run, frame));
+        let mut machine = Statement::clone(&of_moving_machine(run, frame));
+        if let Some(shared) = run.shared().filter(|_| machine.outcome == StatusLight::Good) {
+            let block = shared.block();
+            machine = Statement::of_block(&block.scenario.assembly.conditions(block.block)).unwrap_or(machine);
+        }
         let mut plan = Statement::of_plan(run, frame, &inertia_of(run));
         if run.shared().is_some() && plan.outcome == StatusLight::Bad {
             // What a block does alone, the others may cancel.
