@@ -18,7 +18,7 @@ use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_planning::pose_space::constant_inertia;
-use stillbase_session::assembly::AssemblyBase;
+use stillbase_session::assembly::{AssemblyBase, AssemblyScenario};
 use stillbase_session::scenario::Scenario;
 use stillbase_simulation::frame::Peaks;
 use stillbase_simulation::signals::Signal;
@@ -159,7 +159,7 @@ const CHANGE_POINT: Chart =
 /// some have a reaction wheel and some have none.
 pub fn charts(scenario: &Scenario, wheels_differ: bool) -> Vec<Chart> {
     if let Some(block) = &scenario.assembly {
-        return charts_of_block(scenario, block.scenario.base != AssemblyBase::Fixed);
+        return charts_of_block(scenario, &block.scenario);
     }
     let feels_more = scenario.base.feels_more_than_n_b();
     let has_friction = scenario.plant.friction != Default::default();
@@ -209,15 +209,18 @@ const SHARED_PLACE: Chart =
     Chart { title: "Base place", unit: "mm", signals: &["base"], min_range: 0.01, scale: 1e3, ..EMPTY_CHART };
 
 /// Returns the charts of a block of an assembly: its own, and those of the base that all blocks share.
-fn charts_of_block(scenario: &Scenario, floats: bool) -> Vec<Chart> {
+fn charts_of_block(scenario: &Scenario, whole: &AssemblyScenario) -> Vec<Chart> {
+    let floats = whole.base != AssemblyBase::Fixed;
     let mut list = vec![TORQUE, SHARED_MOMENT, SHARED_FORCE];
     list.extend([SHARED_ATTITUDE, SHARED_PLACE].into_iter().filter(|_| floats));
     list.extend([PINS, ANGLES]);
     list.extend(Some(POSE).filter(|_| constant_inertia(&scenario.machine).is_ok()));
     list.extend([EACH_PIN, TRANSMISSION, CHANGE_POINT]);
-    let size = load_scale(scenario);
+    // The base is that of all blocks, whichever is led.
+    let of_all = whole.tasks.iter().map(|task| load_scale(&task.scenario)).fold(MIN_LOAD_SCALE, f64::max);
+    let own = load_scale(scenario);
     for chart in list.iter_mut().filter(|chart| chart.unit.starts_with('N')) {
-        chart.min_range *= size;
+        chart.min_range *= if [SHARED_FORCE.title, SHARED_MOMENT.title].contains(&chart.title) { of_all } else { own };
     }
     list
 }

@@ -92,8 +92,9 @@ else:
 other.join()
 assert beside == [whole]
 
-# A script ends as any other does, and leaves no file.
+# A script ends as any other does, and leaves no file. A shell may have its jobs in the background ignore the signal.
 script = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
     "import stillbase as sb; print('go', flush=True); "
     "sb.ask('tolerance', 'case-3', simulate=True, samples=10**5, output='all.csv')"
 )

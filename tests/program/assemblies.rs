@@ -219,8 +219,7 @@ fn commands_for_one_machine_say_that_there_are_several() {
     let led = folder.file(
         "led.toml",
         "machine = \"own.toml\"\n[task.left]\nkind = \"reactionless\"\nb = 2.2\nfrom = [0.5, 0.5]\nto = [0.4, 0.6]\n\
-         [task.right]\nkind = \"reactionless\"\nb = 2.2\nfrom = [0.5, 0.5]\nto = [0.4, 0.6]\n"
-            .to_owned(),
+         [task.right]\nkind = \"reactionless\"\nb = 2.2\nfrom = [0.5, 0.5]\nto = [0.4, 0.6]\n",
     );
     let led = word(led);
     assert_eq!(object(&["simulate", &led])["verdict"]["silent_force"], json!([true, true, true]));

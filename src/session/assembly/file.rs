@@ -353,7 +353,7 @@ impl AssemblyScenario {
     /// # Panics
     /// Never: every scenario can be written.
     pub fn to_toml(&self) -> String {
-        let known = builtin_assemblies().iter().any(|own| *own == self.assembly);
+        let known = builtin_assemblies().contains(&self.assembly);
         let machine = match known {
             true => Value::String(self.assembly.name.clone()),
             false => Value::try_from(self.assembly.spec()).expect("an assembly is plain data"),
