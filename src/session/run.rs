@@ -266,15 +266,18 @@ impl Run {
 
     /// Advances by one step.
     pub fn advance(&mut self) {
+        let Some(shared) = &mut self.shared else { return self.simulation.advance() };
+        let from = self.simulation.frame();
         self.simulation.advance();
-        if let Some(shared) = &mut self.shared {
-            shared.advance(&self.simulation.frame());
-        }
+        shared.advance(&from, &self.simulation.frame());
     }
 
     /// Returns the duration of the planned motion, s; in an assembly, that of the block with the longest one.
     pub fn whole_time(&self) -> f64 {
-        self.planned_time().max(self.shared.as_ref().map_or(0.0, |shared| shared.planned_time()))
+        let Some(shared) = &self.shared else { return self.planned_time() };
+        // Other blocks that were led by hand go on as long as that took.
+        let led = self.scenario.duration.filter(|_| shared.has_edits()).unwrap_or(0.0);
+        self.planned_time().max(shared.planned_time()).max(led)
     }
 
     /// Returns whether everything is at rest, and stays so.

@@ -76,12 +76,19 @@ fn a_session_of_blocks_is_saved_and_opened_again() {
         session.apply(Edit::DragTarget { x: at.re + 0.01, y: at.im - 0.005 }).expect("led by hand");
         session.play();
         session.tick(300);
+        // Once more after all planned motions.
+        session.seek(session.length());
+        session.play();
+        session.tick(5000);
+        session.apply(Edit::DragTarget { x: at.re, y: at.im }).expect("led by hand");
+        session.play();
+        session.tick(200);
         let led = AssemblyScenario::of(&session.to_scenario()).expect("an assembly").leading(1);
         // Of the other block the session is longer: it goes on to the end of the first.
         let mut other = Session::open(led).expect("it opens");
         other.seek(session.frame().time);
         let (one, two) = (session.frame().shared.expect("shared"), other.frame().shared.expect("shared"));
-        close("attitude", &one.attitude.components(), &two.attitude.components(), 1e-8);
+        close("attitude", &one.attitude.components(), &two.attitude.components(), 1e-7);
         close("loads", &one.loads.motion.components(), &two.loads.motion.components(), 1e-6);
         let file = folder.path(&format!("{number}.toml"));
         std::fs::write(&file, session.to_scenario().to_toml()).expect("written");
@@ -101,7 +108,8 @@ fn a_session_of_blocks_is_saved_and_opened_again() {
         });
         let last = last.expect("a frame");
         assert!((last.time - session.frame().time).abs() < 1e-9, "{}", whole.name);
-        close("attitude", &last.attitude.components(), &one.attitude.components(), 1e-8);
+        // It knows the states at steps only, and an edit changes accelerations there: 1.4e-5 after two of them.
+        close("attitude", &last.attitude.components(), &one.attitude.components(), 3e-5);
     }
 }
 

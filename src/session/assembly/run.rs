@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::file::{AssemblyBase, AssemblyScenario, BlockTask};
 use super::shared::{between, state_of};
+use crate::scenario::Scenario;
 use crate::{Refusal, Run, replay};
 use stillbase_mechanics::assembly::{Assembly, Attitude, BlockState, MAX_BLOCKS, SpatialLoads};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
@@ -28,7 +29,8 @@ enum BlockMotion {
 }
 
 impl BlockMotion {
-    fn of(task: &BlockTask) -> Result<Self, Refusal> {
+    /// Plans a task, or simulates it for a duration, s.
+    fn of(task: &BlockTask, duration: Option<f64>) -> Result<Self, Refusal> {
         let scenario = &task.scenario;
         if task.rests {
             let run = Run::new(scenario)?;
@@ -38,7 +40,9 @@ impl BlockMotion {
             return Ok(Self::Planned(Run::new(scenario)?.plan().motion.clone()));
         }
         let mut states = Vec::new();
-        replay(scenario, |_, frame| states.push(state_of(frame)))?;
+        // Edits may come after the planned motion: the whole says how long it goes on.
+        let whole = Scenario { duration: duration.or(scenario.duration), ..scenario.clone() };
+        replay(&whole, |_, frame| states.push(state_of(frame)))?;
         Ok(Self::Simulated(scenario.step, states.into()))
     }
 
@@ -156,7 +160,7 @@ impl AssemblyRun {
     pub fn new(scenario: &AssemblyScenario) -> Result<Self, (usize, Refusal)> {
         let mut motions = Vec::with_capacity(scenario.tasks.len());
         for (i, task) in scenario.tasks.iter().enumerate() {
-            motions.push(BlockMotion::of(task).map_err(|why| (i, why))?);
+            motions.push(BlockMotion::of(task, scenario.duration).map_err(|why| (i, why))?);
         }
         let longest = motions.iter().map(BlockMotion::duration);
         let duration = scenario.duration.unwrap_or_else(|| longest.fold(0.0, f64::max));

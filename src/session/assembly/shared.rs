@@ -184,12 +184,11 @@ impl SharedRun {
         Ok(())
     }
 
-    /// Advances the other blocks by a step; `led` is the frame after it of the block that is led.
-    pub fn advance(&mut self, led: &Frame) {
-        for other in self.others.iter_mut().flatten() {
-            other.run.advance();
-            other.edit();
-        }
+    /// Advances the other blocks by a step; `from` and `led` are the frames of the block that is led before and after it.
+    pub fn advance(&mut self, from: &Frame, led: &Frame) {
+        // An edit may have changed its accelerations.
+        self.states[self.block.block] = state_of(from);
+        self.others.iter_mut().flatten().for_each(|other| other.run.advance());
         let (before, after) = (self.states, self.states_with(led));
         let AssemblyBlock { scenario, .. } = &*self.block;
         if let AssemblyBase::Free(base) = &scenario.base {
@@ -206,7 +205,9 @@ impl SharedRun {
                 assembly.base_motion(base, &states, &Vector3::zeros()).rate
             });
         }
-        self.states = after;
+        // Edits that are due change accelerations from here on.
+        self.others.iter_mut().flatten().for_each(OtherBlock::edit);
+        self.states = self.states_with(led);
         self.see(led);
     }
 
@@ -254,6 +255,11 @@ impl SharedRun {
         let longest =
             |(i, run): (usize, &Run)| if self.block.scenario.tasks[i].rests { 0.0 } else { run.planned_time() };
         self.others().map(longest).fold(0.0, f64::max)
+    }
+
+    /// Returns whether another block was edited while it was led.
+    pub fn has_edits(&self) -> bool {
+        self.others.iter().flatten().any(|other| !other.script.is_empty())
     }
 
     /// Returns whether the other blocks are at rest.
