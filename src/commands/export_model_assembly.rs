@@ -6,7 +6,7 @@ use stillbase_exchange::urdf::joint;
 use stillbase_files::FoundMachine;
 use stillbase_mechanics::assembly::{Assembly, SpatialBase};
 use stillbase_mechanics::machine::Machine;
-use stillbase_session::assembly::{AssemblyBase, AssemblyRun, AssemblyScenario};
+use stillbase_session::assembly::{AssemblyBase, AssemblyScenario};
 use stillbase_settings::range::quote_clipped;
 use stillbase_settings::text::shell_word;
 
@@ -119,12 +119,12 @@ fn drives(assembly: &Assembly) -> impl Iterator<Item = usize> {
 
 /// Returns the drive angles of each block at the start of a scenario, rad; `None` if it has no plan.
 fn start_of(scenario: &AssemblyScenario) -> Option<Vec<Vec<f64>>> {
-    let (run, mut start) = (AssemblyRun::new(scenario).ok()?, None);
-    run.run(|frame| {
+    let mut start = None;
+    let run = scenario.run(|frame| {
         start = Some(frame.states[..scenario.tasks.len()].iter().map(|state| state.q.0.to_vec()).collect());
         false
     });
-    start
+    run.ok().and(start)
 }
 
 /// Describes the written file.

@@ -89,19 +89,22 @@ impl Failure {
 
     /// Returns the failure of a refused scenario, with the name of the scenario before the reason.
     pub fn refused(scenario: &Scenario, refusal: Refusal) -> Self {
+        let (task, block, refusal) = match (&scenario.assembly, refusal) {
+            (Some(of), Refusal::OfBlock { block, why }) => match of.task(&block) {
+                Some(task) => (task, Some(block), *why),
+                None => (scenario, Some(block), *why),
+            },
+            (of, refusal) => (scenario, of.as_ref().map(|of| of.name().to_owned()), refusal),
+        };
         let proposals = match refusal {
             Refusal::Stopped => None,
-            _ => proposals_while(scenario, &refusal, &mut |_| goes_on()),
+            _ => proposals_while(task, &refusal, &mut |_| goes_on()),
         };
         let Some(proposals) = proposals else { return Self::Stopped };
-        // A refusal of another block names it already.
-        let is_of_other = refusal.to_string().starts_with("block ");
-        let of_block = scenario.assembly.as_ref().filter(|_| !is_of_other);
-        let context = of_block.map_or(scenario.name.as_str(), |block| block.name());
-        let failure = Self::from(refusal).with_context(context);
+        let failure = Self::from(refusal).with_context(block.as_ref().unwrap_or(&scenario.name));
         let refused = Self::Refused(Box::new(RefusedScenario::of(failure, proposals)));
-        match of_block {
-            Some(block) => refused.of_block(block.name()),
+        match block {
+            Some(block) => refused.of_block(&block),
             None => refused,
         }
     }
@@ -297,7 +300,7 @@ impl From<Refusal> for Failure {
     fn from(e: Refusal) -> Self {
         let whole = e.to_string();
         match e {
-            Refusal::Edit { refusal, .. } => match Self::from(*refusal) {
+            Refusal::Edit { refusal: why, .. } | Refusal::OfBlock { why, .. } => match Self::from(*why) {
                 Self::NoAnswer(_) => Self::NoAnswer(whole),
                 Self::Stopped => Self::Stopped,
                 _ => Self::WrongInput(whole),

@@ -8,7 +8,6 @@ use serde::Serialize;
 use stillbase_recording::{Options, Pictures, RecordError, Recording, RecordingProgress, record};
 #[cfg(feature = "stream")]
 use stillbase_recording::{VIEWER_URL, Viewer, stream};
-use stillbase_session::assembly::AssemblyScenario;
 use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::Statements;
 use stillbase_settings::text::plain;
@@ -16,12 +15,12 @@ use stillbase_settings::text::plain;
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
-use super::headless_assembly;
 use super::in_process::is_in_process;
-use super::input::{Settings, assembly_scenario, no_use, scenario};
+use super::input::{Settings, no_use, scenario_of_any};
 use super::output::{Format, TextTable, say_written};
 use super::progress::Progress;
 use super::simulate::require_audit;
+use super::simulate_assembly::SharedOutcome;
 use super::size::size;
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::fixed;
@@ -109,8 +108,13 @@ struct Row {
     viewer: Option<String>,
     steps: u64,
     peak_torque: Vec<f64>,
-    peak_base_force: f64,
-    peak_base_moment: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_base_force: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_base_moment: Option<f64>,
+    /// Of an assembly, what all its blocks did to their base.
+    #[serde(flatten)]
+    shared: Option<SharedOutcome>,
     /// Peak moment that reaches the base after the reaction wheel, N m, if there is a wheel.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_felt_moment: Option<f64>,
@@ -139,7 +143,13 @@ struct Row {
 
 impl From<Recording> for Row {
     fn from(recording: Recording) -> Self {
-        let faults = run_faults(&recording.scenario, &recording.verdict);
+        let shared = recording.verdict.shared.as_ref().map(|shared| SharedOutcome::of(recording.steps, shared));
+        let faults = match &shared {
+            Some(shared) => shared.fault().map(|why| format!("{}: {why}", recording.scenario)).into_iter().collect(),
+            None => run_faults(&recording.scenario, &recording.verdict),
+        };
+        // What one block does alone, the others may cancel.
+        let own = |peak: f64| shared.is_none().then_some(peak);
         Self {
             faults,
             scenario: recording.scenario,
@@ -147,15 +157,19 @@ impl From<Recording> for Row {
             viewer: None,
             steps: recording.steps,
             peak_torque: recording.peak_torque,
-            peak_base_force: recording.peak_base_force,
-            peak_base_moment: recording.peak_base_moment,
+            peak_base_force: own(recording.peak_base_force),
+            peak_base_moment: own(recording.peak_base_moment),
             peak_felt_moment: recording.verdict.past_wheel,
             peak_moment_past_wheel: recording.verdict.past_wheel,
             reactionless: recording.reactionless,
             keeps_attitude: recording.verdict.attitude.map(|attitude| attitude.is_kept()),
             over: recording.verdict.exceeded_limit.map(|(limit, factor)| (limit.to_string(), factor)),
             audit_failed: recording.verdict.fault.as_ref().map(ToString::to_string),
-            verdict: recording.verdict.sentence(),
+            verdict: match &shared {
+                Some(shared) => shared.sentence.clone(),
+                None => recording.verdict.sentence(),
+            },
+            shared,
             statements: recording.statements,
             answer: recording.verdict.answer(),
             remarks: recording.verdict.remarks().into_iter().map(|r| r.long).collect(),
@@ -166,9 +180,6 @@ impl From<Recording> for Row {
 impl HeadlessArguments {
     /// Records the scenarios and prints the peaks of each.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(of_assembly) = self.assembly()? {
-            return self.record_assembly(&of_assembly);
-        }
         let scenarios = self.scenarios()?;
         let to = self.target()?;
         let [width, height] = self.size;
@@ -185,7 +196,8 @@ impl HeadlessArguments {
         }
         // A program that asks gets this in the answer.
         for row in answer.recordings.iter().filter(|_| !is_in_process()) {
-            print_message(format!("{}: {}", row.scenario, row.statements.line()));
+            let said = if row.shared.is_some() { row.verdict.clone() } else { row.statements.line() };
+            print_message(format!("{}: {said}", row.scenario));
             row.remarks.iter().for_each(|remark| print_message(format!("{}: {remark}", row.scenario)));
         }
         self.format.print(&answer, table)?;
@@ -218,36 +230,15 @@ impl HeadlessArguments {
         Err(Failure::wrong_input("no file: want -o FILE.rrd"))
     }
 
-    /// Returns the scenario of an assembly, if one is named.
-    fn assembly(&self) -> Result<Option<AssemblyScenario>, Failure> {
-        for name in &self.scenarios {
-            if let Some(found) = assembly_scenario(name, &self.settings)? {
-                return match &self.scenarios[..] {
-                    [_] => Ok(Some(found)),
-                    _ => Err(Failure::wrong_input(format!("{name} is of an assembly: want it recorded by itself"))),
-                };
-            }
-        }
-        Ok(None)
-    }
-
-    fn record_assembly(&self, scenario: &AssemblyScenario) -> Result<(), Failure> {
-        if self.fps.is_some() || self.every_step {
-            return Err(Failure::wrong_input("--fps, --every-step: want neither for an assembly"));
-        }
-        match self.target()? {
-            Target::File(file) => headless_assembly::record(scenario, (&file, self.force), &self.format, &self.strict),
-            #[cfg(feature = "stream")]
-            Target::Viewer(_) => Err(Failure::wrong_input("an assembly is not streamed: want -o FILE.rrd")),
-        }
-    }
-
     fn scenarios(&self) -> Result<Vec<Scenario>, Failure> {
         let builtin = Scenario::cases().map(String::from).collect::<Vec<_>>();
         let names = if self.scenarios.is_empty() { &builtin[..] } else { &self.scenarios };
         let mut scenarios: Vec<Scenario> = Vec::with_capacity(names.len());
         for name in names {
-            let next = scenario(name, &self.settings)?;
+            let next = scenario_of_any(name, &self.settings)?;
+            if next.assembly.is_some() && names.len() > 1 {
+                return Err(Failure::wrong_input(format!("{name} is of an assembly: want it recorded by itself")));
+            }
             if scenarios.iter().any(|s| s.name == next.name) {
                 let why = format!("a second scenario called {:?}: want different names in one recording", next.name);
                 return Err(Failure::wrong_input(why).with_context(name));
@@ -331,10 +322,15 @@ fn table(answer: &Answer) -> String {
     let rest = ["peak |f_B| N", "peak |n_B| N m"].map(String::from).into_iter().chain(past);
     let heads = ["scenario", "steps"].map(String::from).into_iter().chain(torques).chain(rest);
     let mut table = TextTable::new(heads.chain(["reactionless".into()]));
-    for r in &answer.recordings {
+    let of_machines: Vec<&Row> = answer.recordings.iter().filter(|row| row.shared.is_none()).collect();
+    if of_machines.is_empty() {
+        return String::new();
+    }
+    for r in of_machines {
         let torques = (0..drives).map(|k| r.peak_torque.get(k).map_or_else(String::new, |t| fixed(*t, 6)));
         let past = wheels.then(|| r.peak_felt_moment.map_or_else(|| "–".into(), |n| fixed(n, 6)));
-        let rest = [fixed(r.peak_base_force, 6), fixed(r.peak_base_moment, 6)].into_iter().chain(past);
+        let loads = [r.peak_base_force, r.peak_base_moment].map(|peak| peak.map_or_else(String::new, |x| fixed(x, 6)));
+        let rest = loads.into_iter().chain(past);
         let cells = [r.scenario.clone(), r.steps.to_string()].into_iter().chain(torques).chain(rest);
         table.row(cells.chain([r.answer.clone()]));
     }

@@ -386,6 +386,17 @@ pub fn scenario(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
     Ok(scenario)
 }
 
+/// Does the same as [`scenario`], and takes assemblies: then the scenario is that of the block which is led.
+///
+/// # Errors
+/// As [`scenario`], and if the scenario of an assembly is wrong.
+pub fn scenario_of_any(name: &str, settings: &Settings) -> Result<Scenario, Failure> {
+    match assembly_scenario(name, settings)? {
+        Some(whole) => Ok(whole.leading(whole.lead)),
+        None => scenario(name, settings),
+    }
+}
+
 /// Returns a run of a scenario, whose motion serves other machines as a task.
 ///
 /// # Errors

@@ -26,7 +26,6 @@ mod file_form;
 #[cfg(feature = "record")]
 mod headless;
 #[cfg(feature = "record")]
-mod headless_assembly;
 mod holds;
 mod import;
 mod import_model;
@@ -128,8 +127,8 @@ macro_rules! subcommands {
 // In the order of the help.
 subcommands! {
     #[cfg(feature = "record")]
-    Headless: headless::HeadlessArguments => [headless::Answer, headless_assembly::AssemblyRecorded],
-    Simulate: simulate::SimulateArguments => [simulate::Answer, simulate_assembly::AssemblyAnswer],
+    Headless: headless::HeadlessArguments => [headless::Answer],
+    Simulate: simulate::SimulateArguments => [simulate::Answer],
     #[cfg(feature = "record")]
     Replay: replay::ReplayArguments => [replay::Answer],
     Diff: diff::DiffArguments => [diff::Answer],

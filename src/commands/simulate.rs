@@ -8,21 +8,21 @@ use std::path::PathBuf;
 use clap::Args;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
-use stillbase_mechanics::machine::Machine;
+use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::{Statements, Verdict};
-use stillbase_session::{Run, replay_if, with_start_edits};
-use stillbase_simulation::frame::Frame;
+use stillbase_session::{Run, WholeFrame, replay_if, signals_of_whole, with_start_edits};
 use stillbase_simulation::signal_table::{SignalColumn, SignalTable};
-use stillbase_simulation::signals::{Signal, row_heads, signals};
+use stillbase_simulation::signals::{Signal, row_heads};
 
 use super::exit::print_message;
 use super::failure::Failure;
 use super::file_form::FileForm;
 use super::in_process::{is_in_process, stop_flag, take};
-use super::input::{DEFAULT_SCENARIO, Settings, assembly_scenario, scenario};
+use super::input::{DEFAULT_SCENARIO, Settings, scenario_of_any};
 use super::output::{Format, TextTable, check_size};
 use super::rows::{RowTarget, Rows};
 use super::signal_choice::SignalChoice;
+use super::simulate_assembly::AssemblyOutcome;
 use super::strict::{Strict, run_faults};
 use stillbase_settings::number::{ShortNumber, counted, fixed};
 
@@ -182,7 +182,62 @@ pub struct Answer {
     units: Columns<&'static str>,
     time: Vec<f64>,
     signals: Columns<Vec<f64>>,
-    verdict: Outcome,
+    verdict: RunOutcome,
+}
+
+/// Results of a run of one machine, or of several.
+#[derive(JsonSchema, Serialize)]
+#[serde(untagged)]
+enum RunOutcome {
+    OfMachine(Box<Outcome>),
+    OfAssembly(AssemblyOutcome),
+}
+
+impl RunOutcome {
+    fn of(run: &Run) -> Self {
+        AssemblyOutcome::of(run).map_or_else(|| Self::OfMachine(Box::new(Outcome::of(run))), Self::OfAssembly)
+    }
+
+    fn audit_failed(&self) -> Option<String> {
+        match self {
+            Self::OfMachine(outcome) => outcome.audit_failed.clone(),
+            Self::OfAssembly(outcome) => outcome.audit_failed.clone(),
+        }
+    }
+
+    /// Returns what fails with `--strict`.
+    fn faults(&self, name: &str, run: &Run) -> Vec<String> {
+        match self {
+            Self::OfMachine(_) => run_faults(name, &Verdict::of(run.scenario(), &run.frame())),
+            Self::OfAssembly(outcome) => outcome.faults(name),
+        }
+    }
+
+    /// Returns the lines of the message that rows were written.
+    fn lines(&self) -> Vec<String> {
+        let outcome = match self {
+            Self::OfMachine(outcome) => outcome,
+            Self::OfAssembly(outcome) => return outcome.lines(),
+        };
+        let past = outcome.peak_felt_moment;
+        let first = format!(
+            "{}, peak |n_B| {} N m,{} peak |f_B| {} N, reactionless: {}",
+            counted(outcome.steps, "step"),
+            fixed(outcome.peak_base_moment, 6),
+            past.map_or_else(String::new, |n| format!(" past the wheel {} N m,", fixed(n, 6))),
+            fixed(outcome.peak_base_force, 6),
+            outcome.answer,
+        );
+        [first, outcome.statements.line()].into_iter().chain(outcome.remarks.iter().cloned()).collect()
+    }
+
+    /// Returns the summary that a terminal gets instead of rows.
+    fn summary(&self, name: &str, table: &[Signal]) -> String {
+        match self {
+            Self::OfMachine(outcome) => summary(outcome, name, table),
+            Self::OfAssembly(outcome) => outcome.summary(name, table.len()),
+        }
+    }
 }
 
 /// A JSON object whose keys keep their order.
@@ -207,13 +262,10 @@ impl<T: Serialize> Serialize for Columns<T> {
 impl SimulateArguments {
     /// Simulates the scenario. Writes its signals as CSV or Parquet, or prints them as JSON, or prints a summary.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(scenario) = assembly_scenario(&self.scenario, &self.settings)? {
-            return self.run_assembly(&scenario);
-        }
-        let scenario = scenario(&self.scenario, &self.settings)?;
+        let scenario = scenario_of_any(&self.scenario, &self.settings)?;
         // The first edits may draw another machine.
         let (start, _) = with_start_edits(&scenario).map_err(|e| Failure::refused(&scenario, e))?;
-        let table = self.table(&start.machine)?;
+        let table = self.table(&start)?;
         let to = match self.writes_csv() {
             true => Some(RowTarget::of(&self.format, &self.form, self.output.as_deref(), self.force)?),
             false => None,
@@ -232,13 +284,15 @@ impl SimulateArguments {
                 return stop.goes_on();
             }
             rows += 1;
+            let whole = WholeFrame::of(run, frame);
+            let value = |signal: &Signal| whole.value(signal) + 0.0;
             if let Some(to) = &to {
-                let values = [frame.time].into_iter().chain(table.iter().map(|s| s.value(frame)));
+                let values = [frame.time].into_iter().chain(table.iter().map(value));
                 written = rows_of(&mut csv, to, &table).and_then(|csv| csv.row(values));
             }
             if self.format.json {
                 time.push(frame.time);
-                columns.iter_mut().zip(&table).for_each(|(column, signal)| column.push(value(signal, frame)));
+                columns.iter_mut().zip(&table).for_each(|(column, signal)| column.push(value(signal)));
             }
             written.is_ok() && stop.goes_on()
         });
@@ -250,33 +304,17 @@ impl SimulateArguments {
         if let Some(csv) = csv {
             csv.finish()?;
         }
-        let verdict = Outcome::of(&run);
-        let faults = run_faults(&scenario.name, &Verdict::of(run.scenario(), &run.frame()));
-        if !self.format.json && to.is_none() {
-            self.format.print(&verdict, |outcome| summary(outcome, &scenario.name, &table))?;
-            require_audit(&scenario.name, verdict.audit_failed)?;
-            return self.strict.require(faults);
-        }
+        let verdict = RunOutcome::of(&run);
+        let name = scenario.name;
+        let (faults, fault) = (verdict.faults(&name, &run), verdict.audit_failed());
         if !self.format.json {
-            let past = verdict.peak_felt_moment;
-            print_message(format!(
-                "{}: {}, peak |n_B| {} N m,{} peak |f_B| {} N, reactionless: {}",
-                scenario.name,
-                counted(verdict.steps, "step"),
-                fixed(verdict.peak_base_moment, 6),
-                past.map_or_else(String::new, |n| format!(" past the wheel {} N m,", fixed(n, 6))),
-                fixed(verdict.peak_base_force, 6),
-                verdict.answer,
-            ));
-            print_message(format!("{}: {}", scenario.name, verdict.statements.line()));
-            for remark in &verdict.remarks {
-                print_message(format!("{}: {remark}", scenario.name));
+            match to {
+                Some(_) => verdict.lines().iter().for_each(|line| print_message(format!("{name}: {line}"))),
+                None => self.format.print(&verdict, |outcome| outcome.summary(&name, &table))?,
             }
-            require_audit(&scenario.name, verdict.audit_failed)?;
+            require_audit(&name, fault)?;
             return self.strict.require(faults);
         }
-        let fault = verdict.audit_failed.clone();
-        let name = scenario.name.clone();
         if is_in_process() {
             // Another program gets the numbers as they are.
             let named = table.iter().zip(std::mem::take(&mut columns));
@@ -285,7 +323,7 @@ impl SimulateArguments {
             take(|said| said.signals = Some(signals));
         }
         let answer = Answer {
-            scenario: scenario.name,
+            scenario: name.clone(),
             units: Columns(table.iter().map(|s| (s.path.clone(), s.unit)).collect()),
             time,
             signals: Columns(table.iter().map(|s| s.path.clone()).zip(columns).collect()),
@@ -302,8 +340,8 @@ impl SimulateArguments {
     }
 
     /// Returns the signals to print.
-    fn table(&self, machine: &Machine) -> Result<Vec<Signal>, Failure> {
-        let mut all = signals(machine);
+    fn table(&self, scenario: &Scenario) -> Result<Vec<Signal>, Failure> {
+        let mut all = signals_of_whole(scenario);
         self.choice.check(all.iter().map(|signal| signal.path.as_str()))?;
         all.retain(|signal| self.choice.has_signal(&signal.path));
         Ok(all)
@@ -367,9 +405,4 @@ pub fn require_audit(scenario: &str, fault: Option<String>) -> Result<(), Failur
         Some(why) => Err(Failure::untrusted(scenario, why)),
         None => Ok(()),
     }
-}
-
-/// Returns the value of a signal, zero without a sign.
-fn value(signal: &Signal, frame: &Frame) -> f64 {
-    signal.value(frame) + 0.0
 }

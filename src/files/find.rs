@@ -161,23 +161,38 @@ pub fn assembly_scenario<E: From<ScenarioError>>(
     apply: impl FnOnce(Assembly) -> Result<Assembly, E>,
 ) -> Result<Option<AssemblyScenario>, E> {
     let file = Path::new(name);
-    let text = match builtin_scenario_text(name) {
-        Some(text) => Some(text.to_owned()),
-        None if Scenario::builtin(name).is_some() => None,
-        None => read(file).ok(),
+    let text = match (builtin_scenario_text(name), recorded(name)) {
+        (Some(text), _) => Some(text.to_owned()),
+        (None, Some(found)) => {
+            let scenario = found?.scenario;
+            scenario.assembly.is_some().then(|| scenario.to_toml())
+        }
+        (None, None) if Scenario::builtin(name).is_some() => None,
+        (None, None) => read(file).ok(),
     };
-    let table: Option<toml::Table> = text.as_ref().and_then(|text| text.parse().ok());
-    let Some((text, table)) = text.zip(table) else { return Ok(None) };
+    text.map_or(Ok(None), |text| assembly_scenario_of((&text, name, file.parent()), change, apply))
+}
+
+/// Returns the scenario of an assembly that a text holds, as [`assembly_scenario`] does. `label` names the text in errors;
+/// files that it names are resolved in `folder`.
+///
+/// # Errors
+/// As [`assembly_scenario`].
+pub(crate) fn assembly_scenario_of<E: From<ScenarioError>>(
+    (text, name, folder): (&str, &str, Option<&Path>),
+    change: &toml::Table,
+    apply: impl FnOnce(Assembly) -> Result<Assembly, E>,
+) -> Result<Option<AssemblyScenario>, E> {
+    let Ok(table) = text.parse::<toml::Table>() else { return Ok(None) };
     let found = match table.get("machine") {
         Some(toml::Value::String(machine)) => {
             let is_known = builtin_assemblies().iter().any(|own| own.name == *machine);
-            let beside =
-                file.parent().filter(|_| !is_known).map_or_else(|| machine.into(), |folder| folder.join(machine));
+            let beside = folder.filter(|_| !is_known).map_or_else(|| machine.into(), |folder| folder.join(machine));
             assembly(&beside.display().to_string())
         }
         // A session that was saved holds its assembly.
         Some(toml::Value::Table(whole)) if whole.contains_key("block") => {
-            let find = |name: &str| machine(name, file.parent());
+            let find = |name: &str| machine(name, folder);
             assembly::parse(&whole.to_string(), &shortened(label(name), 300), &find).map(Some)
         }
         _ => return Ok(None),
@@ -185,8 +200,9 @@ pub fn assembly_scenario<E: From<ScenarioError>>(
     let Some(found) = found.map_err(ScenarioError::from)? else { return Ok(None) };
     let assembly = apply(found)?;
     // With settings, lines are no longer those of the file.
-    let text = if change.is_empty() { text } else { changed_keys(table, change).to_string() };
-    Ok(Some(AssemblyScenario::parse(&text, &shortened(label(name), 300), assembly)?))
+    let changed = if change.is_empty() { None } else { Some(changed_keys(table, change).to_string()) };
+    let text = changed.as_deref().unwrap_or(text);
+    Ok(Some(AssemblyScenario::parse(text, &shortened(label(name), 300), assembly)?))
 }
 
 /// Returns a scenario as [`scenario`] does. Of an assembly, returns that of the block which its file leads; for the name or
@@ -209,7 +225,7 @@ pub fn any_scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
             let note = "a motion was made for each block of the assembly";
             AssemblyScenario::for_assembly(assembly).map(|whole| leads(whole, Some(note.into())))
         }
-        None => scenario(name),
+        None => found_scenario(name),
     }
 }
 
@@ -266,6 +282,15 @@ pub struct FoundScenario {
 /// # Errors
 /// If there is no such scenario, machine or file, the file is neither, or no task can be stated for the machine.
 pub fn scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
+    let found = found_scenario(name)?;
+    match found.scenario.assembly {
+        Some(_) => Err(wrong_file(name, Faults::one(whole_file(IS_OF_ASSEMBLY))).into()),
+        None => Ok(found),
+    }
+}
+
+/// Does the same as [`scenario`], and takes recordings of assemblies.
+fn found_scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
     if let Some(scenario) = Scenario::builtin(name) {
         return Ok(FoundScenario { scenario, note: None, left_out: Vec::new(), recorded: None });
     }

@@ -1,5 +1,6 @@
 //! [`RecordedCase`]: a session and its signals, as a recording holds them.
 
+use crate::find::assembly_scenario_of;
 use stillbase_session::scenario::{Scenario, ScenarioError};
 use stillbase_session::{Refusal, signal_table};
 use stillbase_simulation::signal_table::SignalTable;
@@ -37,7 +38,11 @@ impl RecordedCase {
     /// # Errors
     /// If this version of the program cannot read it.
     pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
-        Scenario::parse(&self.session, &self.name, None)
+        let text = (self.session.as_str(), self.name.as_str(), None);
+        match assembly_scenario_of::<ScenarioError>(text, &toml::Table::new(), Ok)? {
+            Some(whole) => Ok(whole.leading(whole.lead)),
+            None => Scenario::parse(&self.session, &self.name, None),
+        }
     }
 
     /// Returns by how much its signals may differ when this version simulates it again: not at all if it recorded them.

@@ -31,7 +31,7 @@ use super::topic::Topic;
 use stillbase_mechanics::balance::Condition;
 use stillbase_picture::charts::{Chart, ChartPlace};
 use stillbase_picture::scene::palette::{Palette, Theme, palette};
-use stillbase_simulation::signals::group_of;
+use stillbase_simulation::signals::{Signal, group_of};
 
 /// Writes the layout and makes the viewer open with it. `pictured` says whether there are offscreen pictures.
 ///
@@ -45,10 +45,13 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
         tabs.push(layout.comparison(cases)?);
     }
     for case in cases {
-        let (parts, front) = (layout.case(case, cases.len() == 1)?, usize::from(case.design.leads));
+        let (parts, front) = match case.ranges.is_empty() {
+            true => (layout.case(case, cases.len() == 1)?, usize::from(case.design.leads)),
+            false => (vec![layout.assembly(case, cases.len() == 1)?], 0),
+        };
         match cases {
             // A single case needs no enclosing tab.
-            [_] => (tabs, active) = (Vec::from(parts), front),
+            [_] => (tabs, active) = (parts, front),
             _ => tabs.push(layout.tabs(&case.title, &parts, front)?),
         }
     }
@@ -57,55 +60,20 @@ pub fn lay_out(store: &mut Store, cases: &[Preview], pictured: bool) -> Result<(
     layout.open_with(&root)
 }
 
-/// What the layout of an assembly shows.
-pub struct AssemblyLayout {
-    /// Title of the scenario.
-    pub title: String,
-    /// Path of its entities.
-    pub root: EntityPath,
-    /// Eye of its scene.
-    pub eye: Eye,
-    /// Its plots.
-    pub plots: Vec<AssemblyPlot>,
-}
-
-/// A plot of all series of an entity.
-pub struct AssemblyPlot {
-    /// Title, with units.
-    pub title: String,
-    /// The entity.
-    pub path: EntityPath,
-    /// Least and greatest value.
-    pub range: [f64; 2],
-}
-
-/// Number of plots on a page.
+/// Number of plots on a page of an assembly.
 const PLOTS_PER_PAGE: usize = 4;
 
-/// Writes the layout of an assembly and makes the viewer open with it: scene and notes on the left, plots on the right.
-///
-/// # Errors
-/// If it cannot be written.
-pub fn lay_out_assembly(store: &mut Store, of: &AssemblyLayout) -> Result<(), StoreError> {
-    let palette = palette(Theme::Dark);
-    let mut layout = Layout { store, palette, tab: String::new(), charts: Vec::new(), pictured: false };
-    let contents = ["$origin/**", "- $origin/signals/**", "- $origin/notes/**"].map(String::from);
-    let scene = layout.space("Scene", &of.root, &contents, &of.eye)?;
-    let notes = layout.document("Notes", &under(&of.root, "notes"))?;
-    let left = layout.container(ContainerKind::Vertical, "", &[scene, notes], &[2.6, 1.0])?;
-    let mut pages = Vec::new();
-    for (i, plots) in of.plots.chunks(PLOTS_PER_PAGE).enumerate() {
-        let mut parts = Vec::new();
-        for AssemblyPlot { title, path, range } in plots {
-            let range = with_ticks(room_for(*range), plots.len());
-            parts.push(layout.time_series(title, path, &["$origin".into()], Some(range), false)?);
-        }
-        let name = if i == 0 { "Base and drives".to_owned() } else { format!("More {}", i + 1) };
-        pages.push(layout.container(ContainerKind::Vertical, &name, &parts, &vec![1.0; parts.len()])?);
-    }
-    let plots = layout.container(ContainerKind::Tabs, "", &pages, &[])?;
-    let root = layout.container(ContainerKind::Horizontal, &of.title, &[left, plots], &[1.25, 1.0])?;
-    layout.open_with(&root)
+/// Returns the title of the plot of a topic of an assembly, by the name of the topic; `None` if it is not plotted.
+fn title_of_topic(name: &str) -> Option<String> {
+    Some(match name.split_once('/').unwrap_or((name, "")) {
+        ("torque", of) => format!("Torques of {of}  N m"),
+        ("pose", of) => format!("Pose constant b of {of}  rad"),
+        ("force", "dynamic") => "Force on the base, from motion: x, y, z  N".into(),
+        ("moment", "dynamic") => "Moment on the base, from motion: x, y, z  N m".into(),
+        ("attitude", _) => "Attitude of the base: quaternion w, x, y, z".into(),
+        ("base", _) => "Place of the base: x, y, z  m".into(),
+        _ => return None,
+    })
 }
 
 /// Widens a range so that a constant can be seen.
@@ -280,7 +248,7 @@ impl Layout<'_> {
     }
 
     /// Adds the motion of one case, with its scene, lanes and events on the left and plots on the right, and its design.
-    fn case(&mut self, case: &Preview, alone: bool) -> Result<[Part; 2], StoreError> {
+    fn case(&mut self, case: &Preview, alone: bool) -> Result<Vec<Part>, StoreError> {
         self.tab.clone_from(&case.name);
         let mut scenes = vec![self.scene(case, "Scene", &case.scene)?];
         if self.pictured {
@@ -305,7 +273,42 @@ impl Layout<'_> {
         let plots = self.container(ContainerKind::Tabs, "", &pages, &[])?;
         let name = if alone { &case.title } else { "Motion" };
         let motion = self.container(ContainerKind::Horizontal, name, &[left, plots], &[1.25, 1.0])?;
-        Ok([motion, self.design(case)?])
+        Ok(vec![motion, self.design(case)?])
+    }
+
+    /// Adds an assembly: scene, notes and events on the left, plots on the right.
+    fn assembly(&mut self, case: &Preview, alone: bool) -> Result<Part, StoreError> {
+        self.tab.clone_from(&case.name);
+        let contents = ["$origin/**", "- $origin/signals/**", "- $origin/notes/**"].map(String::from);
+        let mut scenes = vec![self.space("Scene", &case.root, &contents, &case.scene)?];
+        if self.pictured {
+            scenes.push(self.pictures(case, "Pictures")?);
+        }
+        let scene = self.container(ContainerKind::Tabs, "", &scenes, &[])?;
+        let one = std::slice::from_ref(case);
+        let said = [self.document("Notes", &under(&case.root, NOTES_PATH))?, self.events(one)?, self.lanes(one)?];
+        let said = self.container(ContainerKind::Tabs, "", &said, &[])?;
+        let left = self.container(ContainerKind::Vertical, "", &[scene, said], &[2.6, 1.0])?;
+        let topics = case.topics.iter().zip(&case.ranges);
+        let mut shown: Vec<_> =
+            topics.filter_map(|(topic, range)| Some((title_of_topic(&topic.name)?, topic, *range))).collect();
+        // What the base feels comes first.
+        let is_of_base = |topic: &Topic| topic.signals.iter().all(Signal::is_of_shared_base);
+        shown.sort_by_key(|(_, topic, _)| !is_of_base(topic));
+        let mut pages = Vec::new();
+        for (i, plots) in shown.chunks(PLOTS_PER_PAGE).enumerate() {
+            let mut parts = Vec::new();
+            for (title, topic, range) in plots {
+                let range = with_ticks(room_for(*range), plots.len());
+                let contents = ["$origin/**".to_owned()];
+                parts.push(self.time_series(title, &topic.path(&case.root), &contents, Some(range), false)?);
+            }
+            let name = if i == 0 { "Base and drives".to_owned() } else { format!("More {}", i + 1) };
+            pages.push(self.container(ContainerKind::Vertical, &name, &parts, &vec![1.0; parts.len()])?);
+        }
+        let plots = self.container(ContainerKind::Tabs, "", &pages, &[])?;
+        let name = if alone { &case.title } else { "Motion" };
+        self.container(ContainerKind::Horizontal, name, &[left, plots], &[1.25, 1.0])
     }
 
     /// Adds the design of the machine: a drawing to scale, its masses and measures, and the residuals of (7) and (8).

@@ -43,7 +43,7 @@
 //! version and verdict are properties of the recording. Equal scenarios give equal recordings, independent of the time
 //! and the computer.
 
-mod assembly;
+mod blocks;
 mod blueprint;
 mod dashes;
 mod design;
@@ -68,7 +68,6 @@ mod topic;
 #[cfg(feature = "stream")]
 mod viewer;
 
-pub use assembly::{AssemblyRecordError, record_assembly};
 pub use options::{Options, Pictures};
 #[cfg(feature = "stream")]
 pub use viewer::{VIEWER_URL, Viewer, ViewerError};

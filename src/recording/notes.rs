@@ -7,6 +7,7 @@ use stillbase_session::scenario::{Bookmark, Note, Scenario};
 use stillbase_session::verdict::{Statements, Verdict};
 use stillbase_settings::number::fixed;
 use stillbase_simulation::frame::Frame;
+use stillbase_study::assembly_check::AssemblyReport;
 use stillbase_study::equations::{DriveState, Equation, equation_text, equations, state_text};
 
 /// Path of the document.
@@ -28,6 +29,12 @@ pub fn document(
     verdict: &Verdict,
     statements: &Statements,
 ) -> String {
+    if let Some(shared) = run.shared() {
+        let is_fixed = frame.shared.is_none_or(|shared| !shared.floats);
+        let report = AssemblyReport::of(&shared.block().scenario.assembly);
+        return report.markdown(&title(scenario), &shared.verdict().sentence(is_fixed))
+            + &written(&scenario.notes, &scenario.bookmarks);
+    }
     let mut text = format!("# {}\n\n{}.\n\n", title(scenario), cell(&verdict.sentence(), MAX_CHARS));
     let Statements { machine: built, plan, run: ended } = statements;
     for (what, statement) in [("Machine", built), ("Plan", plan), ("Run", ended)] {

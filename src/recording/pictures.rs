@@ -9,9 +9,7 @@ use super::store::{Instant, RowTimes, Store};
 use stillbase_picture::render::offscreen::{NoAdapter, NoPicture, Picture, legible_scale};
 #[cfg(all(feature = "render", not(feature = "ui")))]
 use stillbase_picture::render::{View, offscreen::Gpu};
-#[cfg(feature = "render")]
-use stillbase_picture::scene::{Scene, camera::Camera};
-use stillbase_picture::scene::{options::ViewOptions, stage::Stage};
+use stillbase_picture::scene::{Scene, camera::Camera, options::ViewOptions};
 use stillbase_simulation::frame::Frame;
 
 /// Size of buffered pictures above which they are written, bytes.
@@ -123,14 +121,17 @@ impl PictureSeries {
         self.wanted.is_some_and(|p| frame.time + 0.5 * step >= self.count as f64 / p.fps)
     }
 
-    /// Takes a picture.
+    /// Returns the options of pictures, from those of the scene.
+    pub fn options(&self, of_scene: &ViewOptions) -> ViewOptions {
+        ViewOptions { pin_forces: self.wanted.is_some_and(|wanted| wanted.pin_forces), ..of_scene.clone() }
+    }
+
+    /// Takes a picture of a scene at an instant, at a time, s.
     #[cfg(feature = "render")]
-    pub fn take(&mut self, at: Instant, stage: &Stage, frame: &Frame, options: &ViewOptions) -> Result<(), CaseError> {
+    pub fn take(&mut self, (at, time): (Instant, f64), scene: Scene, camera: &Camera) -> Result<(), CaseError> {
         let (Some(wanted), Some(painter)) = (self.wanted, &mut self.painter) else { return Ok(()) };
-        let options = ViewOptions { pin_forces: wanted.pin_forces, ..options.clone() };
-        let scene = stage.scene(frame, &options);
         let failed = |why: &dyn std::fmt::Display| CaseError::Pictures(why.to_string());
-        let picture = painter.draw(scene, &Camera::flat(stage.linkage().reach())).map_err(|why| failed(&why))?;
+        let picture = painter.draw(scene, camera).map_err(|why| failed(&why))?;
         if [picture.width, picture.height] != [wanted.width, wanted.height] {
             let most = picture.width.max(picture.height);
             return Err(failed(&NoPicture::Size { width: wanted.width, height: wanted.height, most }));
@@ -138,12 +139,12 @@ impl PictureSeries {
         self.pictures.push(picture.to_png().map_err(|why| failed(&why))?);
         self.clock.push(at);
         // If steps are longer than the time between pictures, there is one picture per step.
-        self.count = self.count.max((frame.time * wanted.fps).floor() as u64) + 1;
+        self.count = self.count.max((time * wanted.fps).floor() as u64) + 1;
         Ok(())
     }
 
     #[cfg(not(feature = "render"))]
-    pub fn take(&mut self, _: Instant, _: &Stage, _: &Frame, _: &ViewOptions) -> Result<(), CaseError> {
+    pub fn take(&mut self, _: (Instant, f64), _: Scene, _: &Camera) -> Result<(), CaseError> {
         Ok(())
     }
 

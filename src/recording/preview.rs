@@ -4,6 +4,7 @@
 use crate::rerun::EntityPath;
 use crate::rerun::EntityPathPart;
 
+use super::blocks::seen_points;
 use super::design::RecordedDesign;
 use super::eye::Eye;
 use super::steps;
@@ -17,9 +18,8 @@ use stillbase_picture::scene::reaction::Scale;
 use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_query::Queries;
 use stillbase_session::scenario::Scenario;
-use stillbase_session::{Refusal, replay_while, with_start_edits};
+use stillbase_session::{Refusal, WholeFrame, replay_while, signals_of_whole, with_start_edits};
 use stillbase_simulation::frame::{Frame, Peaks};
-use stillbase_simulation::signals::signals;
 use stillbase_study::comparison::DesignCandidate;
 
 /// Extreme values of a run, and the views and charts that they determine.
@@ -41,6 +41,8 @@ pub struct Preview {
     pub topics: Vec<Topic>,
     /// Charts that apply, with the minimum and maximum of the values in each.
     pub charts: Vec<(Chart, [f64; 2])>,
+    /// Of an assembly, the minimum and maximum of the values of each topic; empty for a machine by itself.
+    pub ranges: Vec<[f64; 2]>,
     /// Eye of the view of the machine.
     pub scene: Eye,
     /// Points between which the machine moves, m.
@@ -67,9 +69,11 @@ impl Preview {
         let wider = |range: &mut [f64; 2], x: f64| *range = [range[0].min(x), range[1].max(x)];
         // The first edits may draw another machine.
         let (start, _) = with_start_edits(scenario)?;
-        let signals = signals(&start.machine);
-        let charts = charts(&start, false);
-        let topics = Topic::all(signals.clone(), &charts);
+        let signals = signals_of_whole(&start);
+        // Of an assembly, each topic has a plot.
+        let charts = if start.assembly.is_some() { Vec::new() } else { charts(&start, false) };
+        let topics = Topic::all(signals.clone(), &charts, start.assembly.is_some());
+        let mut ranges = vec![none; if start.assembly.is_some() { topics.len() } else { 0 }];
         let mut charts: Vec<_> = charts.into_iter().map(|chart| (chart, none)).collect();
         charts.retain(|(chart, _)| signals.iter().any(|signal| chart.contains(signal)));
         let held = |(i, (chart, _)): (usize, &(Chart, _))| {
@@ -82,7 +86,15 @@ impl Preview {
         let every = (steps(scenario) / EXTENT_POSES).max(1);
         let run = replay_while(scenario, |run, frame| {
             first.get_or_insert(*frame);
-            if frame.step.is_multiple_of(every) {
+            if let Some(shared) = run.shared() {
+                if frame.step.is_multiple_of(every) {
+                    extent.extend(seen_points(shared.block(), shared.now()));
+                }
+                let whole = WholeFrame::of(run, frame);
+                for (range, topic) in ranges.iter_mut().zip(&topics) {
+                    topic.signals.iter().for_each(|signal| wider(range, whole.value(signal)));
+                }
+            } else if frame.step.is_multiple_of(every) {
                 let machine = &run.scenario().machine;
                 let known = linkage.take().filter(|(of, _)| of == machine);
                 let (_, known) = linkage.insert(known.unwrap_or_else(|| (machine.clone(), LinkageModel::of(machine))));
@@ -94,6 +106,19 @@ impl Preview {
         })?;
         // A limit is drawn under the same condition as in the window.
         let mut topics = topics;
+        for (topic, range) in topics.iter_mut().zip(&mut ranges) {
+            for (i, signal) in topic.signals.iter().enumerate() {
+                let Some(limit) = signal.limit.filter(|limit| shows_limit(*limit, range[0].abs().max(range[1].abs())))
+                else {
+                    continue;
+                };
+                topic.limits.push((i, limit));
+            }
+            for (_, limit) in &topic.limits {
+                wider(range, *limit);
+                wider(range, -limit);
+            }
+        }
         for topic in &mut topics {
             for (i, signal) in topic.signals.iter().enumerate() {
                 let chart = charts.iter_mut().find(|(chart, _)| chart.contains(signal));
@@ -117,7 +142,12 @@ impl Preview {
         };
         let views = Views::over(&run, b, run.queries());
         let eye = |kind: ViewKind, axes| views.shows(kind).then(|| Eye::of(&views.camera(kind), axes));
-        let (joints, tower) = (eye(ViewKind::Joints, views.joint_axes()), eye(ViewKind::Tower, [0, 1, 2]));
+        let (mut joints, mut tower) = (eye(ViewKind::Joints, views.joint_axes()), eye(ViewKind::Tower, [0, 1, 2]));
+        let mut scene = near(reach);
+        if run.shared().is_some() {
+            // What one block is by itself is in its own recording.
+            (joints, tower, scene) = (None, None, around().filled(&extent, 1.3));
+        }
         Ok(Self {
             name: scenario.name.clone(),
             title: if scenario.title.is_empty() { scenario.name.clone() } else { scenario.title.clone() },
@@ -127,7 +157,8 @@ impl Preview {
             b,
             topics,
             charts,
-            scene: near(reach),
+            ranges,
+            scene,
             extent,
             joints,
             candidate: DesignCandidate::of(&run),
@@ -159,6 +190,11 @@ pub fn machines_differ(cases: &[Preview]) -> bool {
 pub fn scale(cases: &[Preview]) -> Scale {
     let largest = |of: fn(&Preview) -> f64| cases.iter().map(of).fold(0.0, f64::max);
     Scale::of(largest(|c| c.peaks.force), largest(|c| c.peaks.moment))
+}
+
+/// Returns an eye in front and above, towards blocks in space.
+fn around() -> Eye {
+    Eye::upright(Orbit { centre: [0.0; 3], distance: 3.0, yaw: 0.5, pitch: 0.55 })
 }
 
 /// Returns an eye in front and above, at which the arm and its workspaces fill the view; `reach` in m.

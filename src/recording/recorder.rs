@@ -6,6 +6,7 @@ use crate::rerun::EntityPathPart;
 use crate::rerun::components::{Scalar, Text};
 use crate::rerun::{AnyValues, EntityPath, TextDocument, ViewCoordinates};
 
+use super::blocks::RecordedBlocks;
 use super::events::{Events, RecordedRun};
 use super::eye::Eye;
 use super::notes;
@@ -18,6 +19,7 @@ use super::store::{Instant, RowTimes, Store};
 use super::style::{lines, under};
 use super::topic::Topic;
 use stillbase_mechanics::planar::MAX_DRIVES;
+use stillbase_picture::scene::camera::Camera;
 use stillbase_picture::scene::options::ViewOptions;
 use stillbase_picture::scene::palette::{Palette, Theme, mix, palette};
 use stillbase_picture::scene::reaction::Scale;
@@ -25,7 +27,7 @@ use stillbase_picture::scene::views::{ViewKind, Views};
 use stillbase_picture::scene::{Scene, point};
 use stillbase_session::scenario::Scenario;
 use stillbase_session::verdict::{Statements, Verdict};
-use stillbase_session::{Edit, Plan, Run, replay_while};
+use stillbase_session::{Edit, Plan, Run, WholeFrame, replay_while};
 use stillbase_simulation::frame::{Frame, Peaks};
 
 /// Number of buffered rows above which they are written.
@@ -113,6 +115,8 @@ struct Recorder<'a> {
     /// Pose constant b at the start, rad.
     first_b: f64,
     machine: RecordingSpace,
+    /// In place of the machine, the blocks of an assembly.
+    blocks: Option<RecordedBlocks>,
     joints: Option<RecordingSpace>,
     tower: Option<RecordingSpace>,
     trail: Thinned<[f32; 3]>,
@@ -136,7 +140,10 @@ impl<'a> Recorder<'a> {
         let RecordingSetup { store, pictures, scale, every_step, several } = set;
         let (palette, root) = (palette(Theme::Dark), &forecast.root);
         store.fixed(root, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-        forecast.design.write(store, root)?;
+        let of_block = scenario.assembly.as_ref();
+        if of_block.is_none() {
+            forecast.design.write(store, root)?;
+        }
         for topic in &forecast.topics {
             topic.style(store, root, &palette, &forecast.peaks)?;
             topic.style_limits(store, root, &palette, &forecast.peaks)?;
@@ -153,6 +160,7 @@ impl<'a> Recorder<'a> {
         let space = |path: &str, eye| RecordingSpace::new(under(root, path), eye, palette.background);
         Ok(Self {
             machine: RecordingSpace::new(root.clone(), forecast.scene, palette.background),
+            blocks: of_block.map(|of| RecordedBlocks::of(of, root, forecast.scene, palette)),
             joints: forecast.joints.map(|eye| space("joint_space", eye)),
             tower: forecast.tower.map(|eye| space("tower", eye)),
             trail: Thinned::new(1, MAX_TRAIL_POINTS),
@@ -195,14 +203,20 @@ impl<'a> Recorder<'a> {
         self.events.note(at, frame, run.scenario());
         if last || edited || frame.step.is_multiple_of(self.signals_every) {
             self.clock.push(at);
-            self.topics.iter_mut().for_each(|topic| topic.push(frame));
+            let whole = WholeFrame::of(run, frame);
+            self.topics.iter_mut().for_each(|topic| topic.push(&whole));
         }
         // After a change of the views, the scene is drawn at once.
         if last || redrawn || frame.step.is_multiple_of(self.row_every) {
-            self.draw(at, frame, last)?;
+            self.draw(at, run, frame, last)?;
         }
         if let Some(drawn) = self.drawn.as_ref().filter(|_| self.pictures.is_due(frame, self.scenario.step)) {
-            self.pictures.take(at, drawn.views.stage(), frame, &self.options)?;
+            let (stage, options) = (drawn.views.stage(), self.pictures.options(&self.options));
+            let (scene, camera) = match &self.blocks {
+                Some(blocks) => (blocks.scene((run, frame, stage), &options), self.forecast.scene.camera()),
+                None => (stage.scene(frame, &options), Camera::flat(stage.linkage().reach())),
+            };
+            self.pictures.take((at, frame.time), scene, &camera)?;
         }
         if self.clock.len() >= MAX_BUFFERED_ROWS || self.pictures.is_full() {
             self.flush()?;
@@ -241,9 +255,12 @@ impl<'a> Recorder<'a> {
     }
 
     /// Draws all scenes of an instant.
-    fn draw(&mut self, at: Instant, frame: &Frame, last: bool) -> Result<(), CaseError> {
+    fn draw(&mut self, at: Instant, run: &Run, frame: &Frame, last: bool) -> Result<(), CaseError> {
         let Some(Drawn { views, .. }) = &self.drawn else { return Ok(()) };
         let when = (at, if self.constant_views { None } else { Some(at) });
+        if let Some(blocks) = &mut self.blocks {
+            return Ok(blocks.draw(self.store, when, (run, frame, views.stage()), &self.options, last)?);
+        }
         let tip = point(frame.end_effector, views.stage().handle_height());
         self.trail.push(|| tip, last);
         self.machine.draw(self.store, when, &views.stage().scene(frame, &self.options))?;
@@ -269,6 +286,9 @@ impl<'a> Recorder<'a> {
         for space in [Some(&mut self.machine), self.joints.as_mut(), self.tower.as_mut()].into_iter().flatten() {
             space.write(self.store)?;
         }
+        if let Some(blocks) = &mut self.blocks {
+            blocks.write(self.store)?;
+        }
         self.pictures.write(self.store, &under(self.root, "view"))
     }
 
@@ -282,8 +302,13 @@ impl<'a> Recorder<'a> {
         for topic in &self.topics {
             topic.write_limits(self.store, self.root, &ends)?;
         }
-        let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
-        self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
+        match &mut self.blocks {
+            Some(blocks) => blocks.finish(self.store)?,
+            None => {
+                let trail = lines([self.trail.take()], 1.8, mix(self.palette.ink, self.palette.dim, 0.5));
+                self.store.fixed(&under(self.root, "end_effector/path"), &trail)?;
+            }
+        }
         let (verdict, statements) = (Verdict::of(run.scenario(), frame), Statements::of(run, frame));
         let recorded = RecordedRun {
             scenario: self.scenario,
@@ -315,12 +340,16 @@ fn properties(
     let numbers = |values: &[f64]| values.iter().copied().map(Scalar::from).collect::<Vec<_>>();
     let number = |x: f64| [Scalar::from(x)];
     let Plan { forecast, pace, price, cycles, .. } = plan;
+    let machine = match &scenario.assembly {
+        Some(of) => of.scenario.assembly.to_toml(),
+        None => stillbase_mechanics::machine::to_toml(&scenario.machine),
+    };
     let mut all = AnyValues::default()
         .with_component::<Text>("title", words(&scenario.title))
         .with_component::<Text>("version", words(env!("CARGO_PKG_VERSION")))
         .with_component::<Text>("verdict", words(&verdict.sentence()))
         .with_component::<Text>("scenario", words(&scenario.to_toml()))
-        .with_component::<Text>("machine", words(&stillbase_mechanics::machine::to_toml(&scenario.machine)))
+        .with_component::<Text>("machine", words(&machine))
         .with_component::<Scalar>("peak_torque", numbers(&peaks.torque))
         .with_component::<Scalar>("peak_base_force", number(peaks.force))
         .with_component::<Scalar>("peak_base_moment", number(peaks.arm_moment))

@@ -9,7 +9,8 @@ use super::style::{CombinedArchetypes, colour, series_name, under};
 use stillbase_files::recorded::{PATHS, UNITS};
 use stillbase_picture::charts::{self, Chart};
 use stillbase_picture::scene::palette::{Palette, faded};
-use stillbase_simulation::frame::{Frame, Peaks};
+use stillbase_session::WholeFrame;
+use stillbase_simulation::frame::Peaks;
 use stillbase_simulation::signals::Signal;
 
 /// Entities of several groups of signals. Any other group is a separate entity with its own name. A signal that is
@@ -54,16 +55,27 @@ pub struct Topic {
     values: Vec<f64>,
 }
 
+/// Returns the path of a signal of an assembly without the name of its drive or axis.
+fn without_last(path: &str) -> &str {
+    let cut = |at: char| path.rsplit_once(at).map(|(kind, _)| kind);
+    cut('.').or_else(|| cut('_')).or_else(|| cut('/')).unwrap_or(path)
+}
+
 impl Topic {
-    /// Groups all signals by topic.
-    pub fn all(signals: Vec<Signal>, charts: &[Chart]) -> Vec<Self> {
+    /// Groups all signals by topic. Of an assembly, signals of one block and kind are a topic: each has a plot of its own.
+    pub fn all(signals: Vec<Signal>, charts: &[Chart], is_of_assembly: bool) -> Vec<Self> {
         let mut topics: Vec<Self> = Vec::new();
         for signal in signals {
             let group = signal.group();
             let group = if group.starts_with("audit_") { "audit" } else { group };
             let of = TOPICS.iter().find(|(_, groups)| groups.contains(&group));
             let is_compared = charts.iter().any(|chart| chart.is_overlaid && chart.signals[0] == signal.path);
-            let name = if is_compared { &signal.path } else { of.map_or(group, |(name, _)| name) }.to_owned();
+            let name = match is_of_assembly {
+                true => without_last(&signal.path),
+                false if is_compared => &signal.path,
+                false => of.map_or(group, |(name, _)| name),
+            };
+            let name = name.to_owned();
             match topics.iter_mut().find(|topic| topic.name == name) {
                 Some(topic) => topic.signals.push(signal),
                 None => topics.push(Self { name, signals: vec![signal], limits: Vec::new(), values: Vec::new() }),
@@ -143,9 +155,9 @@ impl Topic {
         store.columns(&clock.columns(), &self.limits_path(root), rows)
     }
 
-    /// Adds a row with the values of a frame.
-    pub fn push(&mut self, frame: &Frame) {
-        self.values.extend(self.signals.iter().map(|signal| signal.value(frame)));
+    /// Adds a row with the values of an instant.
+    pub fn push(&mut self, whole: &WholeFrame<'_>) {
+        self.values.extend(self.signals.iter().map(|signal| whole.value(signal)));
     }
 
     /// Writes the buffered rows at the instants of a clock.

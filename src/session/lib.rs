@@ -31,6 +31,7 @@ mod script;
 mod shared_task;
 pub mod verdict;
 mod waypoints;
+mod whole_frame;
 
 pub use base_forecast::base_forecast;
 #[doc(hidden)]
@@ -63,3 +64,4 @@ pub use run::{Run, WaitReason};
 #[doc(hidden)]
 pub use run_ahead::RunAhead;
 pub use shared_task::{SharedTask, straight};
+pub use whole_frame::{WholeFrame, signals_of_whole};

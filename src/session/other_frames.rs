@@ -1,6 +1,7 @@
 //! [`OtherFrames`]: frames of the blocks of an assembly beside the one that is led.
 
 use super::run::Run;
+use crate::assembly::SharedRun;
 use stillbase_query::Sequence;
 use stillbase_simulation::frame::Frame;
 
@@ -11,11 +12,11 @@ pub struct OtherFrames(Vec<(usize, Sequence<Frame>)>);
 impl OtherFrames {
     /// Adds the frames of the present step of a run.
     pub(super) fn push(&mut self, run: &Run) {
-        for (place, (block, other)) in run.shared().into_iter().flat_map(|shared| shared.others()).enumerate() {
+        for (place, (block, frame)) in run.shared().into_iter().flat_map(SharedRun::frames).enumerate() {
             if self.0.len() == place {
                 self.0.push((block, Sequence::default()));
             }
-            self.0[place].1.push(other.frame());
+            self.0[place].1.push(frame);
         }
     }
 

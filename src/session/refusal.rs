@@ -44,6 +44,15 @@ pub enum Refusal {
         /// Reason, and the change that would help.
         why: NoCommonB,
     },
+    /// The task of another block of the assembly is refused.
+    #[error("block {block}: {why}")]
+    OfBlock {
+        /// Name of the block.
+        block: String,
+        /// Reason.
+        #[source]
+        why: Box<Refusal>,
+    },
     /// The path cannot be made.
     #[error(transparent)]
     Path(#[from] PathError),

@@ -2,12 +2,12 @@
 
 use crate::changes::{ScriptError, fold_start_edits, in_order};
 use crate::scenario::Scenario;
+use crate::whole_frame::{WholeFrame, signals_of_whole};
 use crate::{Refusal, Run, TimedEdit};
 use stillbase_query::Queries;
 use stillbase_simulation::audit::AuditFigure;
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::signal_table::SignalTable;
-use stillbase_simulation::signals::signals;
 
 /// Applies the edits at step 0 that precede the first drag. Returns the scenario without the other edits, and the
 /// number of the others.
@@ -73,11 +73,12 @@ pub fn signal_table(
 ) -> Result<SignalTable, Refusal> {
     // The first edits may draw another machine.
     let (start, _) = with_start_edits(scenario)?;
-    let signals = signals(&start.machine);
+    let signals = signals_of_whole(&start);
     let mut table = SignalTable::of(&signals);
     let see = |run: &Run, frame: &Frame| {
         if keeps(run, frame) {
-            table.push(&signals, frame);
+            let whole = WholeFrame::of(run, frame);
+            table.push(frame.time, signals.iter().map(|signal| whole.value(signal)));
         }
         goes_on()
     };

@@ -254,7 +254,7 @@ impl Run {
     pub fn frame(&self) -> Frame {
         let frame = self.simulation.frame();
         match &self.shared {
-            Some(shared) => Frame { shared: Some(shared.base(&frame)), ..frame },
+            Some(shared) => shared.in_space(shared.block().block, frame),
             None => frame,
         }
     }
@@ -266,10 +266,10 @@ impl Run {
 
     /// Advances by one step.
     pub fn advance(&mut self) {
-        let Some(shared) = &mut self.shared else { return self.simulation.advance() };
-        let from = self.simulation.frame();
         self.simulation.advance();
-        shared.advance(&from, &self.simulation.frame());
+        if let Some(shared) = &mut self.shared {
+            shared.advance(&self.simulation.frame());
+        }
     }
 
     /// Returns the duration of the planned motion, s; in an assembly, that of the block with the longest one.
@@ -349,10 +349,11 @@ impl Run {
             }
             Edit::Push { .. } | Edit::Set { .. } | Edit::Sketch(_) => self.set(edit)?,
         }
-        match &mut self.shared {
-            Some(shared) => shared.follow(edit),
-            None => Ok(()),
+        if let Some(shared) = &mut self.shared {
+            shared.follow(edit)?;
+            shared.see(&self.simulation.frame());
         }
+        Ok(())
     }
 
     /// Adopts those settings of a scenario on which no frame depends.

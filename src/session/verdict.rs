@@ -267,6 +267,11 @@ impl Verdict {
         self.remarks_if(self.ended)
     }
 
+    /// Returns the remarks on limits that were exceeded, and on a target that a finished run has missed.
+    pub fn misses(&self) -> Vec<Remark> {
+        self.misses_if(true)
+    }
+
     fn remarks_if(&self, finished: bool) -> Vec<Remark> {
         let mut all = Vec::new();
         let mut add = |short: &str, long: String| all.push(Remark { short: short.into(), long });
@@ -297,6 +302,13 @@ impl Verdict {
             );
             add("tilts its base", long);
         }
+        all.extend(self.misses_if(finished));
+        all
+    }
+
+    fn misses_if(&self, finished: bool) -> Vec<Remark> {
+        let mut all = Vec::new();
+        let mut add = |short: &str, long: String| all.push(Remark { short: short.into(), long });
         if let Some((angle, by)) = &self.past_limit {
             add("past a joint limit", format!("{angle} passes its limit by up to {} rad", significant(*by)));
         }

@@ -117,6 +117,8 @@ pub struct SharedBase {
     pub turn: [f64; 2],
     /// Largest distance so far of the base from where it was, m.
     pub shift: f64,
+    /// End effector of the machine in space, m.
+    pub tip: Vector3<f64>,
 }
 
 impl SharedBase {

@@ -1,6 +1,5 @@
 //! [`SignalTable`]: signals over time, as a run gives them or as a file holds them.
 
-use crate::frame::Frame;
 use crate::signals::Signal;
 
 /// Signals over time.
@@ -34,10 +33,10 @@ impl SignalTable {
         Self { time: Vec::new(), columns: signals.iter().map(column).collect() }
     }
 
-    /// Appends the values of a frame; `signals` are those of the table.
-    pub fn push(&mut self, signals: &[Signal], frame: &Frame) {
-        self.time.push(frame.time);
-        self.columns.iter_mut().zip(signals).for_each(|(column, signal)| column.values.push(signal.value(frame)));
+    /// Appends a row: a time, s, and the value of each signal.
+    pub fn push(&mut self, time: f64, values: impl Iterator<Item = f64>) {
+        self.time.push(time);
+        self.columns.iter_mut().zip(values).for_each(|(column, value)| column.values.push(value));
     }
 
     /// Returns the signal with a path.

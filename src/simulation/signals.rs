@@ -23,6 +23,8 @@ pub struct Signal {
     pub drive: Option<usize>,
     /// Largest permitted |value|, in the signal's unit: the limit of a drive.
     pub limit: Option<f64>,
+    /// Place in its assembly of the block whose frames have it; 0 for a machine by itself.
+    pub block: usize,
     quantity: Quantity,
 }
 
@@ -34,15 +36,15 @@ enum Quantity {
     OfSharedBase(usize, fn(&SharedBase, usize) -> f64),
 }
 
-/// Compares the paths and the indices of the drive, angle or pin: the same path may mean another drive on another
-/// machine.
+/// Compares the paths, the blocks, and the indices of the drive, angle or pin: the same path may mean another drive on
+/// another machine.
 impl PartialEq for Signal {
     fn eq(&self, other: &Self) -> bool {
         let place = |signal: &Self| match signal.quantity {
             Quantity::PerIndex(k, _) => Some(k),
             Quantity::Whole(_) | Quantity::OfSharedBase(..) => None,
         };
-        self.path == other.path && place(self) == place(other)
+        (&self.path, self.block, place(self)) == (&other.path, other.block, place(other))
     }
 }
 
@@ -163,11 +165,54 @@ const OF_ITS_BASE: [&str; 14] = [
 pub fn signals_of_block(machine: &Machine, floats: bool) -> Vec<Signal> {
     let mut table = signals(machine);
     table.retain(|signal| !OF_ITS_BASE.contains(&signal.group()));
+    table.extend(of_shared_base(floats));
+    table
+}
+
+/// Groups of signals that each block of an assembly has among those of all blocks. Torques are known while the base is
+/// held; the others are of the plane of a block, or of its machine by itself.
+const OF_EACH_BLOCK: [&str; 10] =
+    ["torque", "angle", "rate", "acceleration", "reference", "error", "joint", "pose", "transmission", "change_point"];
+
+/// Returns the signals of all blocks of an assembly, in a fixed order: those of each block, with its name before that of
+/// the drive, as `torque/wrist.1`, its end effector in space, and those of the base.
+pub fn signals_of_assembly<'a>(blocks: impl Iterator<Item = (&'a str, &'a Machine)>, floats: bool) -> Vec<Signal> {
+    let mut table = Vec::new();
+    for (block, (name, machine)) in blocks.enumerate() {
+        let own = signals(machine).into_iter();
+        let own =
+            own.filter(|signal| OF_EACH_BLOCK.contains(&signal.group()) && !(floats && signal.group() == "torque"));
+        table.extend(own.map(|signal| {
+            let (group, rest) = signal.path.split_once('/').unwrap_or((&signal.path, ""));
+            let (path, label) = (format!("{group}/{name}.{rest}"), format!("{name}: {}", signal.label));
+            Signal { path, label, block, ..signal }
+        }));
+        for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
+            let [symbol, label, unit] = described(&format!("tip/{axis}"));
+            table.push(Signal {
+                path: format!("tip/{name}.{axis}"),
+                symbol: symbol.into(),
+                label: format!("{name}: {label}"),
+                unit,
+                drive: None,
+                limit: None,
+                block,
+                quantity: Quantity::OfSharedBase(i, |base, i| base.tip[i]),
+            });
+        }
+    }
+    table.extend(of_shared_base(floats));
+    table
+}
+
+/// Returns the signals of a base that the blocks of an assembly share.
+fn of_shared_base(floats: bool) -> Vec<Signal> {
+    let mut table = Vec::new();
     let mut add = |path: String, i: usize, value: fn(&SharedBase, usize) -> f64| {
         let [symbol, label, unit] = described(&path);
         let quantity = Quantity::OfSharedBase(i, value);
         let (symbol, label) = (symbol.into(), label.into());
-        table.push(Signal { path, symbol, label, unit, drive: None, limit: None, quantity });
+        table.push(Signal { path, symbol, label, unit, drive: None, limit: None, block: 0, quantity });
     };
     for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
         add(format!("force/dynamic_{axis}"), i, |base, i| base.loads.motion.force[i]);
@@ -219,6 +264,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
                     .iter()
                     .find(|(group, ..)| path.strip_suffix("/*") == Some(group))
                     .and_then(|(.., limit)| limit(drive)),
+                block: 0,
                 quantity: Quantity::PerIndex(k, value),
             });
         }
@@ -232,6 +278,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             unit,
             drive: Some(angle.to),
             limit: None,
+            block: 0,
             quantity: Quantity::PerIndex(i, |f, i| f.a[i]),
         });
     }
@@ -294,6 +341,7 @@ pub fn signals(machine: &Machine) -> Vec<Signal> {
             unit,
             drive: None,
             limit: None,
+            block: 0,
             quantity: Quantity::Whole(value),
         });
     }
@@ -314,6 +362,7 @@ fn inside(machine: &Machine) -> Vec<Signal> {
             unit,
             drive,
             limit: None,
+            block: 0,
             quantity,
         });
     };

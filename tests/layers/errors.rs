@@ -95,8 +95,6 @@ errors! {
     #[cfg(feature = "record")]
     stillbase::recording::RecordError,
     #[cfg(feature = "record")]
-    stillbase::recording::AssemblyRecordError,
-    #[cfg(feature = "record")]
     stillbase::recording::ViewerError,
     #[cfg(feature = "window")]
     stillbase::app::window::WindowError,

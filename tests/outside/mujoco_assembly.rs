@@ -7,7 +7,7 @@ use stillbase::exchange::mjcf::{mjcf_of_assembly, qpos_of_assembly};
 use stillbase::files::assembly_scenario;
 use stillbase::mechanics::assembly::{Assembly, BlockState, SpatialBase, builtin_assemblies};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
-use stillbase::session::assembly::{AssemblyBase, AssemblyFrame, AssemblyRun};
+use stillbase::session::assembly::{AssemblyBase, AssemblyFrame, AssemblyScenario};
 use stillbase::session::scenario::ScenarioError;
 
 use super::python::answers;
@@ -214,21 +214,22 @@ fn blocks_turn_a_free_base_alike() {
     }
 }
 
-fn run(name: &str) -> (AssemblyRun, Vec<AssemblyFrame>) {
+fn run(name: &str) -> (AssemblyScenario, Vec<AssemblyFrame>) {
     let scenario = assembly_scenario::<ScenarioError>(name, &toml::Table::new(), Ok).expect("valid").expect("built in");
-    let (run, mut frames) = (AssemblyRun::new(&scenario).expect("a plan"), Vec::new());
-    run.run(|frame| {
+    let mut frames = Vec::new();
+    let see = |frame: &AssemblyFrame| {
         frames.push(frame.clone());
         true
-    });
-    (run, frames)
+    };
+    scenario.run(see).expect("a run");
+    (scenario, frames)
 }
 
 /// What reaches the base in the scenarios that come along, at sensors that are not ours.
 fn silent_runs_are_silent_in_mujoco() {
     for (name, is_silent) in [("four-freedoms", true), ("off-its-pin", false)] {
         let (run, frames) = run(name);
-        let assembly = &run.scenario().assembly;
+        let assembly = &run.assembly;
         let frames: Vec<&AssemblyFrame> = frames.iter().step_by(10).collect();
         let mut asked = Asked::of(assembly, None);
         frames.iter().for_each(|frame| asked.motion(&frame.states, None));
@@ -243,13 +244,13 @@ fn silent_runs_are_silent_in_mujoco() {
         assert_eq!(peak < 1e-10 * scale, is_silent, "{name}: {peak} of {scale}");
     }
     let (run, frames) = run("arm-against-arm");
-    let AssemblyBase::Free(base) = &run.scenario().base else { panic!("it floats") };
-    let mut asked = Asked::of(&run.scenario().assembly, Some(base));
+    let AssemblyBase::Free(base) = &run.base else { panic!("it floats") };
+    let mut asked = Asked::of(&run.assembly, Some(base));
     let frames: Vec<&AssemblyFrame> = frames.iter().step_by(10).collect();
     for AssemblyFrame { states, attitude, origin, rate, .. } in &frames {
         let [w, x, y, z] = attitude.components();
         // A base that does not turn moves with its arms.
-        let seen = run.scenario().assembly.momentum(states).linear / (base.mass + run.scenario().assembly.mass());
+        let seen = run.assembly.momentum(states).linear / (base.mass + run.assembly.mass());
         asked.motion(states, Some(&([origin.x, origin.y, origin.z, w, x, y, z], -(attitude.0 * seen), *rate)));
     }
     for found in asked.found(&frames[0].states) {
@@ -261,7 +262,7 @@ fn silent_runs_are_silent_in_mujoco() {
 /// The torques of a run alone lead all end effectors where they go here.
 fn torques_move_the_blocks_alike() {
     let (run, frames) = run("four-freedoms");
-    let (assembly, step) = (&run.scenario().assembly, run.scenario().step);
+    let (assembly, step) = (&run.assembly, run.step);
     let asked = Asked::of(assembly, None);
     let mut line = asked.line(&frames[0].states);
     let blocks = assembly.blocks().len();

@@ -2,24 +2,27 @@
 
 use arrow::array::{Array, FixedSizeListArray, Float32Array};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use stillbase::recording::record_assembly;
-use stillbase::session::assembly::{AssemblyFrame, AssemblyRun, assembly_signals};
+use stillbase::files::recorded::cases;
+use stillbase::recording::{Options, RecordError, record};
+use stillbase::session::assembly::{AssemblyFrame, AssemblyScenario};
+use stillbase::session::{WholeFrame, replay, signals_of_whole};
 
 use super::Contents;
 use crate::folder::Folder;
 
-fn run(name: &str) -> AssemblyRun {
+fn whole(name: &str) -> AssemblyScenario {
     let keep = |assembly| Ok::<_, stillbase::session::scenario::ScenarioError>(assembly);
     let scenario = stillbase::files::assembly_scenario(name, &toml::Table::new(), keep).expect("valid");
-    AssemblyRun::new(&scenario.expect("an assembly")).expect("a run")
+    scenario.expect("an assembly")
 }
 
-fn frames(run: &AssemblyRun) -> Vec<AssemblyFrame> {
+fn frames(whole: &AssemblyScenario) -> Vec<AssemblyFrame> {
     let mut all = Vec::new();
-    run.run(|frame| {
+    let see = |frame: &AssemblyFrame| {
         all.push(frame.clone());
         true
-    });
+    };
+    whole.run(see).expect("a run");
     all
 }
 
@@ -27,12 +30,14 @@ fn frames(run: &AssemblyRun) -> Vec<AssemblyFrame> {
 fn blocks_are_recorded_where_they_are() {
     let folder = Folder::new("recording-assembly");
     for name in ["four-freedoms", "arm-against-arm"] {
-        let (run, file) = (run(name), folder.path(&format!("{name}.rrd")));
-        let verdict = record_assembly(&run, (&file, false), &|| true).expect("recorded");
-        let (frames, contents) = (frames(&run), Contents::of(&file));
-        assert_eq!(verdict.steps as usize + 1, frames.len());
+        let (whole, file) = (whole(name), folder.path(&format!("{name}.rrd")));
+        let scenario = whole.leading(whole.lead);
+        let to = |file, options: &Options| record(std::slice::from_ref(&scenario), file, options, &mut |_| true);
+        let recorded = to(&file, &Options::default()).expect("recorded");
+        let (frames, contents) = (frames(&whole), Contents::of(&file));
+        assert_eq!(recorded[0].steps as usize + 1, frames.len());
         assert_eq!(contents.activated, 1);
-        for (i, block) in run.scenario().assembly.blocks().iter().enumerate() {
+        for (i, block) in whole.assembly.blocks().iter().enumerate() {
             let path = format!("/{name}/{}", block.name);
             let (steps, places) = contents.vectors(&path, "Transform3D:translation");
             assert_eq!(steps.len(), places.len());
@@ -65,32 +70,39 @@ fn blocks_are_recorded_where_they_are() {
             let want = frames.last().map(|frame| frame.in_space(&frame.tips[i])).expect("a frame");
             assert!((Vector3::from(end) - want).norm() < 1e-6);
         }
-        // Every signal, row by row.
-        let mut seen = 0;
-        for signal in assembly_signals(&run) {
-            let group =
-                signal.path.rsplit_once(['.', '_']).or_else(|| signal.path.rsplit_once('/')).map_or("", |(g, _)| g);
-            let path = format!("/{name}/signals/{group}");
-            let paths = contents.texts(&path, "paths");
-            let place = paths.iter().position(|own| *own == signal.path).expect("its place");
-            let values = contents.numbers(&path, "Scalars:scalars");
-            let own: Vec<f64> = values.into_iter().skip(place).step_by(paths.len()).collect();
-            let want: Vec<f64> = frames.iter().filter(|f| f.step % 10 == 0).map(|frame| signal.value(frame)).collect();
-            assert_eq!(own, want, "{}", signal.path);
-            seen += 1;
+        // Every signal, row by row; and the recording is simulated again to the same numbers.
+        let (signals, mut rows) = (signals_of_whole(&scenario), Vec::new());
+        replay(&scenario, |run, frame| {
+            let whole = WholeFrame::of(run, frame);
+            rows.push((frame.time, signals.iter().map(|signal| whole.value(signal)).collect::<Vec<f64>>()));
+        })
+        .expect("a run");
+        let case = cases(&file).expect("it is read").remove(0);
+        assert_eq!(case.table.columns.len(), signals.len());
+        assert!(case.table.time.len() > 400);
+        for (k, signal) in signals.iter().enumerate() {
+            let column = case.table.column(&signal.path).unwrap_or_else(|| panic!("{}", signal.path));
+            assert_eq!(column.unit, signal.unit);
+            for (time, own) in case.table.time.iter().zip(&column.values) {
+                let (_, want) = rows.iter().find(|(at, _)| (at - time).abs() < 1e-9).expect("a step");
+                assert_eq!(*own, want[k], "{} at {time} s", signal.path);
+            }
         }
-        assert!(seen > 20);
+        let again = case.scenario().expect("it is read");
+        let difference = case.simulated_again(&again, &case.tolerances(), || true).expect("a run");
+        assert!(difference.is_equal(), "{difference:?}");
         assert_eq!(
             contents.texts(&format!("/{name}/notes"), "TextDocument:text")[0].lines().next(),
-            Some(format!("# {}", run.scenario().title).as_str())
+            Some(format!("# {}", whole.title).as_str())
         );
         // The same again, but for when it was written; and nothing is replaced or left behind.
         let again = folder.path("again.rrd");
-        record_assembly(&run, (&again, true), &|| true).expect("recorded");
+        to(&again, &Options::default()).expect("recorded");
         assert!(super::told(&again) == super::told(&file));
-        record_assembly(&run, (&file, false), &|| true).expect_err("it is there");
+        to(&file, &Options::default()).expect_err("it is there");
         let stopped = folder.path("stopped.rrd");
-        assert!(record_assembly(&run, (&stopped, false), &|| false).is_err() && !stopped.exists());
+        let none = record(&[scenario], &stopped, &Options::default(), &mut |_| false);
+        assert!(matches!(none, Err(RecordError::Stopped)) && !stopped.exists());
         std::fs::remove_file(&again).expect("there");
     }
     assert_eq!(folder.names(), ["arm-against-arm.rrd", "four-freedoms.rrd"]);

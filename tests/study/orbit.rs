@@ -52,7 +52,7 @@ fn measured(machine: &Machine, samples: &str, com: [f64; 2], more: &str) -> Orbi
     let (mut table, mut step) = (SignalTable::of(&all), 0);
     replay(&scenario, |_, frame| {
         if step % 20 == 0 {
-            table.push(&all, frame);
+            table.push(frame.time, all.iter().map(|signal| signal.value(frame)));
         }
         step += 1;
     })
@@ -242,7 +242,7 @@ fn one_swing_says_what_is_wanted() {
     let mut table = SignalTable::of(&all);
     replay(&scenario, |_, frame| {
         if step % 20 == 0 {
-            table.push(&all, frame);
+            table.push(frame.time, all.iter().map(|signal| signal.value(frame)));
         }
         step += 1;
     })

@@ -187,21 +187,12 @@ impl AppState {
     /// Records the run.
     #[cfg(feature = "record")]
     pub(super) fn record(&mut self, path: &Path) -> Result<(), String> {
-        use stillbase_session::assembly::{AssemblyBase, AssemblyRun, AssemblyScenario};
-
         self.require_machine()?;
         let busy = "one recording is under way: want it to end first";
         self.write(path, Activity::Recording, busy, AfterWriting::Nothing, |app_state| {
             let mut scenario = app_state.session.to_scenario();
             scenario.duration = Some(app_state.session.length());
-            let whole = AssemblyScenario::of(&scenario);
             Ok(move |ticket: &Ticket, path: &Path, force: bool| {
-                if let Some(whole) = whole {
-                    let run = AssemblyRun::new(&whole).map_err(|(_, why)| why.to_string())?;
-                    let done = stillbase_recording::record_assembly(&run, (path, force), &|| ticket.goes_on(0.0));
-                    let said = done.map_err(|e| e.to_string())?.sentence(whole.base == AssemblyBase::Fixed);
-                    return Ok(format!("recorded {} ({said}); open it with the Rerun viewer", absolute(path)));
-                }
                 let options = stillbase_recording::Options { force, ..Default::default() };
                 let mut report = |progress: stillbase_recording::RecordingProgress| {
                     ticket.goes_on(progress.done as f64 / progress.total.max(1) as f64)

@@ -212,8 +212,18 @@ impl BlockStages {
         scene
     }
 
+    /// Returns the stage of a block that is not led.
+    pub fn stage(&self, block: usize) -> Option<&Stage> {
+        self.others.iter().find(|(of, ..)| *of == block).map(|(.., stage)| stage)
+    }
+
+    /// Returns the body of a base that floats, and its pose in the axes of the base.
+    pub fn body(&self) -> Option<&(Mesh, Matrix4<f64>)> {
+        self.body.as_ref()
+    }
+
     /// Draws force and moment on the base at its origin, from motion, if they do not count as zero.
-    fn reactions(&self, scene: &mut Scene, shared: &SharedBase, palette: &Palette) {
+    pub fn reactions(&self, scene: &mut Scene, shared: &SharedBase, palette: &Palette) {
         let (six, silent) = (shared.loads.motion.components(), shared.silent());
         for (name, unit, first) in [("force", "N", 0), ("moment", "N m", 3)] {
             let parts = first..first + 3;
@@ -253,7 +263,7 @@ impl BlockStages {
         let own_place = self.block.block;
         let mut first: Vec<[f64; 3]> = moved(own.first, own_place, floor).collect();
         for (i, frame) in others {
-            let Some((.., stage)) = self.others.iter().find(|(of, ..)| *of == i) else { continue };
+            let Some(stage) = self.stage(i) else { continue };
             first.extend(moved(stage.content(frame, &[]).first, i, stage.linkage().floor()));
         }
         if let Some((_, pose)) = &self.body {

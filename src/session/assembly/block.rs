@@ -31,6 +31,12 @@ impl AssemblyBlock {
         &self.scenario.assembly.blocks()[self.block].name
     }
 
+    /// Returns what another block does, as a scenario of its machine by itself.
+    pub fn task(&self, block: &str) -> Option<&Scenario> {
+        let place = self.scenario.assembly.blocks().iter().position(|own| own.name == block)?;
+        Some(&self.scenario.tasks[place].scenario)
+    }
+
     /// Returns the scenario of the whole assembly, in which this block does what `own` states.
     pub fn whole(&self, own: &Scenario) -> AssemblyScenario {
         let mut whole = AssemblyScenario::clone(&self.scenario);

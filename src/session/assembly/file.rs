@@ -108,9 +108,6 @@ const MAX_NUMBER: f64 = 1e9;
 const STEP: [f64; 2] = [1e-6, 0.1];
 const DURATION: [f64; 2] = [1e-3, 1e6];
 
-/// Maximum number of steps.
-const MAX_STEPS: f64 = 1e8;
-
 /// Reads a scenario of an assembly.
 struct Reading<'a> {
     file: StatedFile<'a>,
@@ -438,10 +435,5 @@ impl AssemblyScenario {
         }
         let stated: Table = self.to_toml().parse().unwrap_or_default();
         Self::parse(&changed_keys(stated, change).to_string(), label, self.assembly)
-    }
-
-    /// Returns whether it has no more steps than are simulated, for a duration, s.
-    pub(super) fn fits(&self, duration: f64) -> bool {
-        duration / self.step <= MAX_STEPS
     }
 }

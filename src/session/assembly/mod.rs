@@ -3,22 +3,20 @@
 //! A block is planned as a machine by itself that holds what it carries, so tasks, time laws, limits and refusals are those
 //! of one machine. What the blocks put on the base together is computed in space.
 //!
-//! An [`AssemblyRun`] follows the references of all blocks without error, but where a scenario has edits or other control.
-//! The window leads one block: its [`Scenario`](crate::scenario::Scenario) holds the [`AssemblyBlock`], and its
-//! [`Run`](crate::Run) takes the others along, step by step. Friction, and payloads unknown to the model, are left to
-//! scenarios of one machine.
+//! Window, command line and recording lead one block: its [`Scenario`](crate::scenario::Scenario) holds the
+//! [`AssemblyBlock`], and its [`Run`](crate::Run) takes the others along, step by step. Friction, and payloads unknown to
+//! the model, are left to scenarios of one machine.
 
 mod against;
 mod block;
 mod catalog;
 mod file;
+mod frame;
 mod run;
 mod shared;
-mod signals;
 
 pub use block::AssemblyBlock;
 pub use catalog::{builtin_assembly_scenarios, builtin_scenario_text};
 pub use file::{AssemblyBase, AssemblyScenario, BlockTask, changed_keys};
-pub use run::{AssemblyFrame, AssemblyRun, AssemblyVerdict};
+pub use frame::{AssemblyFrame, AssemblyVerdict};
 pub use shared::SharedRun;
-pub use signals::{AssemblySignal, assembly_signals};

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::against::against;
 use super::block::AssemblyBlock;
 use super::file::AssemblyBase;
-use super::run::{AssemblyFrame, AssemblyVerdict};
+use super::frame::{AssemblyFrame, AssemblyVerdict};
 use crate::changes::in_order;
 use crate::edit::{Edit, TimedEdit};
 use crate::refusal::Refusal;
@@ -15,21 +15,20 @@ use crate::run::Run;
 use stillbase_mechanics::assembly::{Attitude, BlockState, MAX_BLOCKS};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
-use stillbase_simulation::frame::{Frame, SharedBase};
+use stillbase_simulation::frame::{Frame, Peaks, SharedBase};
 
 /// The other blocks of an assembly in motion, step by step with the block that is led.
 #[derive(Clone, Debug)]
 pub struct SharedRun {
     block: Arc<AssemblyBlock>,
     others: Vec<Option<OtherBlock>>,
-    /// States of all blocks at the present step.
-    states: [BlockState; MAX_BLOCKS],
-    attitude: Attitude,
+    /// Blocks and base at the present step.
+    now: AssemblyFrame,
+    /// Peaks of |τ| of the motors of each block, N m.
+    peaks: [PerDrive; MAX_BLOCKS],
     /// Centre of mass of everything in space, m: it stays where it is if the base floats.
     com: Vector3<f64>,
     verdict: AssemblyVerdict,
-    /// Largest distance of the base from where it was, m.
-    shift: f64,
     /// The block whose b follows that of the block that is led, with `c` and `f` of b′ = c + f b.
     bound: Option<(usize, [f64; 2])>,
 }
@@ -38,6 +37,8 @@ pub struct SharedRun {
 #[derive(Clone, Debug)]
 struct OtherBlock {
     run: Run,
+    /// Frame of the present step, of the block by itself.
+    frame: Frame,
     script: Arc<[TimedEdit]>,
     /// Index of the first edit that is not applied yet.
     next: usize,
@@ -52,7 +53,13 @@ impl OtherBlock {
             if self.run.apply(&due.edit).is_err() {
                 break;
             }
+            self.frame = self.run.frame();
         }
+    }
+
+    fn advance(&mut self) {
+        self.run.advance();
+        self.frame = self.run.frame();
     }
 }
 
@@ -75,9 +82,9 @@ impl QuickQuery for OtherBlocks {
                 Some(waiting) => Err(waiting.why.clone()),
                 None => Ok((run, next)),
             });
-            let (run, next) =
-                begun.map_err(|why| Refusal::Task(format!("block {}: {why}", assembly.blocks()[i].name)))?;
-            let mut other = OtherBlock { run, script, next };
+            let (run, next) = begun
+                .map_err(|why| Refusal::OfBlock { block: assembly.blocks()[i].name.clone(), why: Box::new(why) })?;
+            let mut other = OtherBlock { frame: run.frame(), run, script, next };
             other.edit();
             Ok(Some(other))
         };
@@ -86,13 +93,13 @@ impl QuickQuery for OtherBlocks {
 }
 
 /// Returns the state of motion of a frame.
-pub fn state_of(frame: &Frame) -> BlockState {
+fn state_of(frame: &Frame) -> BlockState {
     BlockState { q: frame.q, qd: frame.qd, qdd: frame.qdd }
 }
 
 /// Returns the state at a share of a step of h seconds between two states: the polynomial of fifth degree with their
 /// angles, rates and accelerations.
-pub fn between(from: &BlockState, to: &BlockState, h: f64, share: f64) -> BlockState {
+fn between(from: &BlockState, to: &BlockState, h: f64, share: f64) -> BlockState {
     let n = from.qd.len();
     let of = |k: usize| {
         let [p, v, a] = [from.q[k], h * from.qd[k], h * h * from.qdd[k]];
@@ -122,21 +129,29 @@ impl SharedRun {
         let others = queries.ask::<QuickWork<OtherBlocks>>(&ByIdentity(block.clone()));
         let follower = block.scenario.follower_of(block.block);
         let b_of = |i: usize| block.scenario.tasks[i].scenario.task.b;
+        let AssemblyBlock { scenario, .. } = &**block;
+        let others = Result::clone(&others)?;
         let none = PerDrive::zeros(0);
+        let mut states = [BlockState { q: DriveAngles(none), qd: none, qdd: none }; MAX_BLOCKS];
+        states[block.block] = state_of(led);
+        for (i, other) in others.iter().enumerate() {
+            states[i] = other.as_ref().map_or(states[i], |other| state_of(&other.frame));
+        }
+        let com = match &scenario.base {
+            AssemblyBase::Free(base) => scenario.assembly.base_motion(base, &states, &Vector3::zeros()).com,
+            AssemblyBase::Fixed => Vector3::zeros(),
+        };
+        let drives = |i: usize| scenario.assembly.blocks().get(i).map_or(0, |block| block.machine.drives());
+        let place = (Attitude::level(), Vector3::zeros(), Vector3::zeros());
         let mut shared = Self {
+            now: AssemblyFrame::of(&scenario.assembly, (led.step, led.time), states, place),
+            peaks: std::array::from_fn(|i| PerDrive::zeros(drives(i))),
             block: block.clone(),
-            others: Result::clone(&others)?,
-            states: [BlockState { q: DriveAngles(none), qd: none, qdd: none }; MAX_BLOCKS],
-            attitude: Attitude::level(),
-            com: Vector3::zeros(),
+            others,
+            com,
             verdict: AssemblyVerdict::default(),
-            shift: 0.0,
             bound: follower.map(|(i, factor)| (i, [b_of(i) - factor * led.b_reference, factor])),
         };
-        shared.states = shared.states_with(led);
-        if let AssemblyBase::Free(base) = &shared.block.scenario.base {
-            shared.com = shared.block.scenario.assembly.base_motion(base, &shared.states, &Vector3::zeros()).com;
-        }
         shared.see(led);
         Ok(shared)
     }
@@ -151,13 +166,20 @@ impl SharedRun {
         self.others.iter().enumerate().filter_map(|(i, other)| Some((i, &other.as_ref()?.run)))
     }
 
-    fn states_with(&self, led: &Frame) -> [BlockState; MAX_BLOCKS] {
-        let mut states = self.states;
-        states[self.block.block] = state_of(led);
-        for (i, run) in self.others() {
-            states[i] = state_of(&run.frame());
-        }
-        states
+    /// Returns the frames of the other blocks at the present step, each with its place in the assembly.
+    pub fn frames(&self) -> impl Iterator<Item = (usize, Frame)> {
+        let own = |(i, other): (usize, &Option<OtherBlock>)| Some((i, self.in_space(i, other.as_ref()?.frame)));
+        self.others.iter().enumerate().filter_map(own)
+    }
+
+    /// Returns blocks and base at the present step.
+    pub fn now(&self) -> &AssemblyFrame {
+        &self.now
+    }
+
+    /// Returns the assessment up to the present step.
+    pub fn verdict(&self) -> &AssemblyVerdict {
+        &self.verdict
     }
 
     /// Applies to the bound block what an edit of b asks of it.
@@ -173,6 +195,7 @@ impl SharedRun {
             .run
             .apply(&edit)
             .map_err(|why| Refusal::Task(format!("block {name}, whose b is bound to this one: {why}")))?;
+        other.frame = other.run.frame();
         let (wanted, bound) = (other.run.scenario().pose_acceleration, other.run.pose_bound().unwrap_or(f64::INFINITY));
         if bound < wanted * (1.0 - 1e-9) {
             let most = bound / factor.abs();
@@ -184,16 +207,15 @@ impl SharedRun {
         Ok(())
     }
 
-    /// Advances the other blocks by a step; `from` and `led` are the frames of the block that is led before and after it.
-    pub fn advance(&mut self, from: &Frame, led: &Frame) {
-        // An edit may have changed its accelerations.
-        self.states[self.block.block] = state_of(from);
-        self.others.iter_mut().flatten().for_each(|other| other.run.advance());
-        let (before, after) = (self.states, self.states_with(led));
+    /// Advances the other blocks by a step; `led` is the frame of the block that is led after it.
+    pub fn advance(&mut self, led: &Frame) {
+        let before = self.now.states;
+        self.others.iter_mut().flatten().for_each(OtherBlock::advance);
         let AssemblyBlock { scenario, .. } = &*self.block;
         if let AssemblyBase::Free(base) = &scenario.base {
+            let after = self.states(led);
             let (assembly, h, count) = (&scenario.assembly, scenario.step, scenario.assembly.blocks().len());
-            self.attitude = self.attitude.after(h, |share, _| {
+            self.now.attitude = self.now.attitude.after(h, |share, _| {
                 let mut states = before;
                 for i in 0..count {
                     states[i] = match share {
@@ -207,47 +229,47 @@ impl SharedRun {
         }
         // Edits that are due change accelerations from here on.
         self.others.iter_mut().flatten().for_each(OtherBlock::edit);
-        self.states = self.states_with(led);
         self.see(led);
     }
 
-    fn see(&mut self, led: &Frame) {
-        let frame = self.whole(led);
-        self.verdict.see(&self.block.scenario.assembly, &frame);
-        self.shift = self.shift.max(frame.origin.norm());
+    fn states(&self, led: &Frame) -> [BlockState; MAX_BLOCKS] {
+        let mut states = self.now.states;
+        states[self.block.block] = state_of(led);
+        for (state, other) in states.iter_mut().zip(&self.others) {
+            *state = other.as_ref().map_or(*state, |other| state_of(&other.frame));
+        }
+        states
     }
 
-    /// Returns the frame of the whole at the present step.
-    fn whole(&self, led: &Frame) -> AssemblyFrame {
-        let assembly = &self.block.scenario.assembly;
-        let mut states = self.states;
-        states[self.block.block] = state_of(led);
-        let (origin, rate) = match &self.block.scenario.base {
+    /// Takes over the state of the block that is led at the present step: after a step, or after an edit.
+    pub fn see(&mut self, led: &Frame) {
+        let (states, attitude) = (self.states(led), self.now.attitude);
+        let AssemblyBlock { scenario, .. } = &*self.block;
+        let (origin, rate) = match &scenario.base {
             AssemblyBase::Fixed => (Vector3::zeros(), Vector3::zeros()),
             AssemblyBase::Free(base) => {
-                let motion = assembly.base_motion(base, &states, &Vector3::zeros());
-                (self.com - self.attitude.0 * motion.com, motion.rate)
+                let motion = scenario.assembly.base_motion(base, &states, &Vector3::zeros());
+                (self.com - attitude.0 * motion.com, motion.rate)
             }
         };
-        AssemblyFrame::of(assembly, (led.step, led.time), states, (self.attitude, origin, rate))
+        let at = (led.step, led.time);
+        self.now = AssemblyFrame::of(&scenario.assembly, at, states, (attitude, origin, rate));
+        self.verdict.see(&scenario.assembly, &self.now);
+        for (peaks, torques) in self.peaks.iter_mut().zip(&self.now.torques) {
+            (0..peaks.len()).for_each(|k| peaks[k] = peaks[k].max(torques[k].abs()));
+        }
     }
 
-    /// Returns what the shared base feels and does, while the block that is led is in the state of a frame.
-    pub fn base(&self, led: &Frame) -> SharedBase {
-        let AssemblyFrame { loads, attitude, origin, rate, .. } = self.whole(led);
-        let AssemblyVerdict { peaks, scale, turn: [most, _], .. } = self.verdict;
-        let turn = [most, attitude.0.angle()];
-        SharedBase {
-            loads,
-            attitude,
-            origin,
-            rate,
-            floats: self.block.scenario.base != AssemblyBase::Fixed,
-            peaks,
-            scale,
-            turn,
-            shift: self.shift,
-        }
+    /// Returns the frame of a block at the present step, with what it feels from the others and what their base does; `own`
+    /// is its frame by itself.
+    pub fn in_space(&self, block: usize, own: Frame) -> Frame {
+        let AssemblyFrame { loads, attitude, origin, rate, .. } = self.now;
+        let AssemblyVerdict { peaks, scale, turn, shift, .. } = self.verdict;
+        let floats = self.block.scenario.base != AssemblyBase::Fixed;
+        let tip = self.now.in_space(&self.now.tips[block]);
+        let shared = SharedBase { loads, attitude, origin, rate, floats, peaks, scale, turn, shift, tip };
+        let peaks = Peaks { torque: self.peaks[block], ..own.peaks };
+        Frame { torque: self.now.torques[block], peaks, shared: Some(shared), ..own }
     }
 
     /// Duration of the longest planned motion of the other blocks, s.

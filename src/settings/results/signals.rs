@@ -60,6 +60,7 @@ pub const SIGNALS: &[ResultRow] = &[
     signal("com/y", "y_CM", "m", "centre of mass, y").frame(BASE),
     signal("tip/x", "x", "m", "end effector, x").frame(BASE),
     signal("tip/y", "y", "m", "end effector, y").frame(BASE),
+    signal("tip/z", "z", "m", "end effector of a block, z").frame(BASE),
     signal("target/x", "x target", "m", "target, x").frame(BASE),
     signal("target/y", "y target", "m", "target, y").frame(BASE),
     signal("base/x", "x_B", "m", "base, x").frame(BASE),
