@@ -306,7 +306,7 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
 /// # Errors
 /// If the file, its assembly or a setting is wrong.
 pub fn assembly_scenario(name: &str, settings: &Settings) -> Result<Option<AssemblyScenario>, Failure> {
-    const OF_FILE: [&str; 7] = ["task", "base", "step", "duration", "lead", "scenario", "against"];
+    const OF_FILE: [&str; 8] = ["task", "base", "step", "duration", "lead", "scenario", "against", "tip"];
     let is_of_file = |key: &str| OF_FILE.contains(&key.split('.').next().unwrap_or(key));
     let [of_file, of_blocks] = [true, false].map(|wanted| settings.of_keys(|key| is_of_file(key) == wanted));
     let apply = |assembly| of_blocks.apply_to_assembly(assembly);

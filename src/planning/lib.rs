@@ -14,6 +14,7 @@
 //! | use of the redundant freedoms of four and more drives | [`posture`] |
 //! | at constant b: following curves, or the reason why not; following pointer and slider | [`following`] |
 //! | off the planes b = const: the cost of a change of b, the least reaction, zero momentum | [`off_plane`] |
+//! | paths of the last platform of blocks that carry each other | [`platform`] |
 //! | path and timing together, and a forecast of torques and reactions | [`motion`], [`forecast`] |
 //!
 //! Only [`pose_space`] chooses its methods by the number of drives. Callers query a pose space for a capability by
@@ -28,6 +29,7 @@ pub mod forecast;
 mod golden;
 pub mod motion;
 pub mod off_plane;
+pub mod platform;
 pub mod pose_constant;
 pub mod pose_space;
 pub mod posed;

@@ -43,6 +43,10 @@ impl AssemblyBlock {
         let task = &mut whole.tasks[self.block];
         let (name, title, summary) = (self.name().to_owned(), String::new(), String::new());
         let scenario = Scenario { name, title, summary, duration: None, assembly: None, ..own.clone() };
+        // A task of its own takes the place of the path that led the block.
+        let is_led = scenario.task == task.scenario.task;
+        whole.tip = whole.tip.filter(|tip| is_led || !tip.blocks.contains(&self.block));
+        let task = &mut whole.tasks[self.block];
         task.rests &= scenario.task == task.scenario.task && scenario.edits.is_empty();
         task.scenario = scenario;
         (whole.name, whole.title, whole.summary) = (own.name.clone(), own.title.clone(), own.summary.clone());

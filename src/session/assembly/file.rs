@@ -6,10 +6,14 @@ use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::tip::{TipChain, TipError, TipPath};
+use crate::Run;
 use crate::gentle_motion::gentle_motion;
 use crate::scenario::{Scenario, ScenarioError};
 use stillbase_mechanics::assembly::{Assembly, SpatialBase, builtin_assemblies};
 use stillbase_mechanics::machine::{KeyPath, Machine, Payload};
+use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::curves::Samples;
 use stillbase_settings::change::{self, DEFAULT_WORD};
 use stillbase_settings::fault::{Fault, Faults};
 use stillbase_settings::range::{MAX_SAID, quote_clipped, shortened};
@@ -37,6 +41,8 @@ pub struct AssemblyScenario {
     pub duration: Option<f64>,
     /// The block that the window leads first.
     pub lead: usize,
+    /// A path of the end effector of a block, by which all blocks that carry it are led.
+    pub tip: Option<TipTask>,
     /// Two blocks with parallel planes of which one changes its b against the other's, so that the base feels no moment.
     pub against: Option<[usize; 2]>,
 }
@@ -48,6 +54,15 @@ pub struct BlockTask {
     pub scenario: Scenario,
     /// Whether the file states no task: the block rests in the pose of its machine.
     pub rests: bool,
+}
+
+/// A path of an end effector, with the blocks that it leads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TipTask {
+    /// The path.
+    pub path: TipPath,
+    /// Places of the blocks in the assembly, the one on the base first. Their tasks are samples that the path gives.
+    pub blocks: Vec<usize>,
 }
 
 /// The base of an assembly.
@@ -71,6 +86,7 @@ struct File {
     _machine: Value,
     lead: Option<Value>,
     against: Option<Value>,
+    tip: Option<TipPath>,
     #[serde(default)]
     task: BTreeMap<String, Table>,
     /// Other settings of the scenarios of blocks, and their edits.
@@ -165,9 +181,24 @@ impl Reading<'_> {
             None => 0,
         };
         let step = step.unwrap_or(USUAL_STEP);
-        let mut tasks = Vec::with_capacity(names.len());
+        let chain = match &file.tip {
+            Some(path) => {
+                let tip_error = |TipError { key, said }| self.wrong(&["tip", key], said);
+                let block = path.block(&assembly).map_err(tip_error)?;
+                TipChain::of(&assembly, block, &path.b).map_err(tip_error)?.blocks().to_vec()
+            }
+            None => Vec::new(),
+        };
+        let mut tasks: Vec<Option<BlockTask>> = vec![None; names.len()];
         for (i, block) in assembly.blocks().iter().enumerate() {
             let (stated, other) = (file.task.get(&block.name), file.scenario.get(&block.name));
+            if chain.contains(&i) {
+                if stated.is_some() {
+                    let said = format!("[tip] leads block {}: want no task of its own, or no [tip]", block.name);
+                    return Err(self.wrong(&["task", &block.name], said));
+                }
+                continue;
+            }
             let task = match (stated, &block.machine.spec().pose) {
                 (Some(task), _) => task.clone(),
                 (None, Some(pose)) => resting(pose),
@@ -180,8 +211,18 @@ impl Reading<'_> {
                 }
             };
             let scenario = self.of_block(&assembly, i, (task, other), step)?;
-            tasks.push(BlockTask { rests: stated.is_none() && scenario.edits.is_empty(), scenario });
+            tasks[i] = Some(BlockTask { rests: stated.is_none() && scenario.edits.is_empty(), scenario });
         }
+        if let Some(path) = &file.tip {
+            let rest: Vec<DriveAngles> = tasks.iter().map(rest_of).collect();
+            let plan = path.plan(&assembly, &rest).map_err(|TipError { key, said }| self.wrong(&["tip", key], said))?;
+            for (i, samples) in plan.blocks.iter().zip(plan.samples) {
+                let other = file.scenario.get(&assembly.blocks()[*i].name);
+                let scenario = self.of_block(&assembly, *i, (given(&samples), other), step)?;
+                tasks[*i] = Some(BlockTask { rests: false, scenario });
+            }
+        }
+        let tasks: Vec<BlockTask> = tasks.into_iter().flatten().collect();
         let stem =
             std::path::Path::new(self.label).file_stem().map_or_else(|| self.label.into(), |s| s.to_string_lossy());
         let base = self.base(&file.base)?;
@@ -200,6 +241,7 @@ impl Reading<'_> {
             step,
             duration,
             lead,
+            tip: file.tip.map(|path| TipTask { path, blocks: chain }),
             against: None,
         };
         if let Some(pair) = &file.against {
@@ -302,7 +344,7 @@ impl Reading<'_> {
 }
 
 /// Returns the machine of a block with what it carries held at its end effector.
-fn holding(assembly: &Assembly, i: usize) -> Result<Machine, String> {
+pub(super) fn holding(assembly: &Assembly, i: usize) -> Result<Machine, String> {
     let block = &assembly.blocks()[i];
     let carried = assembly.mass_above(i) - block.inertia.mass();
     let mut spec = block.machine.spec().clone();
@@ -331,6 +373,19 @@ pub fn changed_keys(stated: Table, wanted: &Table) -> Table {
     let mut all = change::join(stated, wanted);
     without_defaults(&mut all);
     all
+}
+
+/// Returns where a block is at the start, rad; of a block without a task, nowhere.
+fn rest_of(task: &Option<BlockTask>) -> DriveAngles {
+    let run = task.as_ref().and_then(|task| Run::or_waiting(&task.scenario).ok());
+    run.map_or_else(|| DriveAngles(PerDrive::zeros(0)), |run| run.plan().motion.at(0.0).q)
+}
+
+/// Returns the task of a block that samples lead.
+fn given(samples: &Samples) -> Table {
+    let row = |row: &[f64]| Value::Array(row.iter().map(|x| Value::Float(*x)).collect());
+    let rows = Value::Array(samples.rows().map(row).collect());
+    Table::from_iter([("kind".into(), Value::String("given".into())), ("samples".into(), rows)])
 }
 
 /// Returns the task of a block that rests in a pose, rad.
@@ -365,6 +420,11 @@ impl AssemblyScenario {
             let name = |i: usize| Value::String(self.assembly.blocks()[i].name.clone());
             ("against".to_owned(), Value::Array(pair.map(name).into()))
         }));
+        file.extend(self.tip.iter().map(|tip| {
+            let path = Value::try_from(&tip.path).expect("a path is plain data");
+            ("tip".to_owned(), path)
+        }));
+        let is_led = |i: usize| self.tip.as_ref().is_some_and(|tip| tip.blocks.contains(&i));
         file.insert("step".into(), Value::Float(self.step));
         file.extend(self.duration.map(|duration| ("duration".to_owned(), Value::Float(duration))));
         if let AssemblyBase::Free(SpatialBase { mass, com, inertia }) = &self.base {
@@ -382,9 +442,9 @@ impl AssemblyScenario {
             );
         }
         let (mut tasks, mut others) = (Table::new(), Table::new());
-        for (block, task) in self.assembly.blocks().iter().zip(&self.tasks) {
+        for (i, (block, task)) in self.assembly.blocks().iter().zip(&self.tasks).enumerate() {
             let mut own: Table = task.scenario.to_toml().parse().expect("a scenario is written as TOML");
-            let stated = own.remove("task").filter(|_| !task.rests);
+            let stated = own.remove("task").filter(|_| !task.rests && !is_led(i));
             tasks.extend(stated.map(|stated| (block.name.clone(), stated)));
             own.retain(|key, _| BLOCK_KEYS.contains(&key));
             others.insert(block.name.clone(), Value::Table(own));
@@ -422,7 +482,7 @@ impl AssemblyScenario {
         }
         let (name, summary) = (assembly.name.clone(), assembly.summary.clone());
         let (title, base, step) = (name.clone(), AssemblyBase::Fixed, USUAL_STEP);
-        Ok(Self { name, title, summary, assembly, tasks, base, step, duration: None, lead: 0, against: None })
+        Ok(Self { name, title, summary, assembly, tasks, base, step, duration: None, lead: 0, tip: None, against: None })
     }
 
     /// Returns the scenario with keys of its file changed; the word `default` removes one. Errors name `label`.

@@ -14,9 +14,11 @@ mod file;
 mod frame;
 mod run;
 mod shared;
+mod tip;
 
 pub use block::AssemblyBlock;
 pub use catalog::{builtin_assembly_scenarios, builtin_scenario_text};
-pub use file::{AssemblyBase, AssemblyScenario, BlockTask, changed_keys};
+pub use file::{AssemblyBase, AssemblyScenario, BlockTask, TipTask, changed_keys};
 pub use frame::{AssemblyFrame, AssemblyVerdict};
 pub use shared::SharedRun;
+pub use tip::TipPath;
