@@ -43,7 +43,7 @@ Examples:
   stillbase export-model nine-link -o nine-link.urdf
   stillbase export-model serial-3r --pose 1.2,0.1,-0.8 -o arm.xml
   stillbase export-model spot --base spot -o satellite.xml
-  stillbase export-model four-freedoms -o four.xml
+  stillbase export-model wrist-across -o four.xml
   stillbase export-model carrier-and-wrist --block wrist -o wrist.svg
   stillbase export-model two-drive --bar-width 0.025 --pin-diameter 0.006 -o links.svg
   stillbase export-model scara --material 2700 -o parts.csv")]

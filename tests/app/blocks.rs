@@ -39,7 +39,7 @@ fn is_plotted(h: &Window, title: &str) -> bool {
 }
 
 fn all_blocks_are_seen_and_one_is_led() {
-    let mut h = opened("four-freedoms");
+    let mut h = opened("wrist-across");
     assert_eq!(h.state().app_state().view_state().view, ViewKind::Space);
     let seen = items(&mut h);
     for name in ["machine/link/1", "wrist/machine/link/1", "wrist/workspace/boundary", "carrier", "wrist"] {
@@ -60,7 +60,7 @@ fn all_blocks_are_seen_and_one_is_led() {
 
 /// A drag of the target leads the wrist in its plane across, which is not that of the world.
 fn the_hand_leads_a_block_in_its_own_plane() {
-    let mut h = opened("four-freedoms");
+    let mut h = opened("wrist-across");
     h.state_mut().app_state_mut().carry_out(SessionCommand::Lead(0));
     h.run_steps(2);
     let place = |h: &Window, at: [f64; 2]| {
@@ -82,7 +82,7 @@ fn the_hand_leads_a_block_in_its_own_plane() {
 }
 
 fn another_block_is_led_and_taken_back() {
-    let mut h = opened("four-freedoms");
+    let mut h = opened("wrist-across");
     h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(0.7));
     h.run_steps(2);
     let shared = |h: &Window| session(h).frame().shared.expect("shared").loads.motion.components();

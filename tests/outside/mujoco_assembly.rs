@@ -227,7 +227,7 @@ fn run(name: &str) -> (AssemblyScenario, Vec<AssemblyFrame>) {
 
 /// What reaches the base in the scenarios that come along, at sensors that are not ours.
 fn silent_runs_are_silent_in_mujoco() {
-    for (name, is_silent) in [("four-freedoms", true), ("off-its-pin", false)] {
+    for (name, is_silent) in [("wrist-across", true), ("off-its-pin", false)] {
         let (run, frames) = run(name);
         let assembly = &run.assembly;
         let frames: Vec<&AssemblyFrame> = frames.iter().step_by(10).collect();
@@ -261,7 +261,7 @@ fn silent_runs_are_silent_in_mujoco() {
 
 /// The torques of a run alone lead all end effectors where they go here.
 fn torques_move_the_blocks_alike() {
-    let (run, frames) = run("four-freedoms");
+    let (run, frames) = run("wrist-across");
     let (assembly, step) = (&run.assembly, run.step);
     let asked = Asked::of(assembly, None);
     let mut line = asked.line(&frames[0].states);

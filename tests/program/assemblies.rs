@@ -82,7 +82,7 @@ fn states_of_blocks_have_a_wrench_in_space() {
 
 #[test]
 fn blocks_follow_tasks_of_their_own() {
-    let silent = object(&["simulate", "four-freedoms", "--signals", "torque,pose", "--every", "1000", "--strict"]);
+    let silent = object(&["simulate", "wrist-across", "--signals", "torque,pose", "--every", "1000", "--strict"]);
     assert_eq!(silent["verdict"]["silent_force"], json!([true, true, true]));
     assert_eq!(silent["time"], json!([0.0, 1.0, 2.0]));
     assert_eq!(silent["units"]["torque/wrist.1"], "N m");
@@ -99,22 +99,22 @@ fn blocks_follow_tasks_of_their_own() {
     });
     assert!(both.as_f64().is_some_and(|turn| turn < 1e-9) && one.as_f64().is_some_and(|turn| turn > 0.02), "{one}");
     // A refusal names its block, and its ways out work as they are printed.
-    let refused = ["simulate", "four-freedoms", "--signals", "moment", "--set", "task.carrier.b=2"];
+    let refused = ["simulate", "wrist-across", "--signals", "moment", "--set", "task.carrier.b=2"];
     fails(&refused, 1, &["block carrier: ", "--set task.carrier.b="]);
     let out = stillbase(&refused);
     let typed = text(&out.stderr).lines().find(|line| line.contains("take b =")).expect("a way out");
     let (_, setting) = typed.rsplit_once("--set ").expect("a setting");
     assert_eq!(
-        object(&["simulate", "four-freedoms", "--signals", "moment", "--set", setting])["verdict"]["silent_moment"][2],
+        object(&["simulate", "wrist-across", "--signals", "moment", "--set", setting])["verdict"]["silent_moment"][2],
         true
     );
     for (args, words) in [
         (&["design", "carrier-and-wrist"][..], "want one machine"),
-        (&["spectrum", "four-freedoms"], "render and export-model take this one"),
-        (&["headless", "case-1", "four-freedoms", "-o", "x.rrd"], "recorded by itself"),
-        (&["simulate", "four-freedoms", "--signals", "nothing"], "no signal \"nothing\""),
-        (&["simulate", "four-freedoms", "--set", "task.elbow.b=1"], "no block \"elbow\""),
-        (&["simulate", "four-freedoms", "--set", "step=0"], "want 0.000001 to 0.1 s"),
+        (&["spectrum", "wrist-across"], "render and export-model take this one"),
+        (&["headless", "case-1", "wrist-across", "-o", "x.rrd"], "recorded by itself"),
+        (&["simulate", "wrist-across", "--signals", "nothing"], "no signal \"nothing\""),
+        (&["simulate", "wrist-across", "--set", "task.elbow.b=1"], "no block \"elbow\""),
+        (&["simulate", "wrist-across", "--set", "step=0"], "want 0.000001 to 0.1 s"),
         (&["machines", "two-arms", "-o", "x.toml"], "is an assembly"),
     ] {
         fails(args, 2, &[words]);
@@ -125,9 +125,9 @@ fn blocks_follow_tasks_of_their_own() {
 fn assemblies_go_out_as_models() {
     let folder = Folder::new("assemblies");
     let [xml, urdf, svg] = ["four.xml", "four.urdf", "wrist.svg"].map(|name| word(folder.path(name)));
-    let said = object(&["export-model", "four-freedoms", "-o", &xml]);
+    let said = object(&["export-model", "wrist-across", "-o", &xml]);
     // It starts where its scenario does.
-    let start = object(&["simulate", "four-freedoms", "--signals", "angle", "--every", "1000"]);
+    let start = object(&["simulate", "wrist-across", "--signals", "angle", "--every", "1000"]);
     let q = |path: &str| &start["signals"][format!("angle/{path}")][0];
     let pose = said["pose"].as_array().expect("a list").clone();
     assert_eq!(pose.len(), 5);
@@ -169,7 +169,7 @@ fn assemblies_go_out_as_models() {
         (&["nine-link", "-o", "x.xml", "--block", "arm"], "--block arm has no use here: want it with an assembly"),
         (&["carrier-and-wrist", "-o", "x.xml", "--pose", "1,2"], "a pose of 2 angles: want 5"),
         (&["carrier-and-wrist", "-o", "x.xml", "--pose", "1,2,3,4,inf"], "want finite angles"),
-        (&["two-arms", "-o", "x.xml", "--base", "four-freedoms"], "whose base floats"),
+        (&["two-arms", "-o", "x.xml", "--base", "wrist-across"], "whose base floats"),
         (&["carrier-and-wrist", "-o", "x.urdf", "--pose", "1,2,3,4,5"], "--pose has no effect on such a file"),
         (&["carrier-and-wrist", "-o", "x.xml", "--set", "wrist.link.1.inertia=0"], "link \"wrist/1\" has inertia 0"),
     ] {
@@ -225,12 +225,12 @@ fn commands_for_one_machine_say_that_there_are_several() {
     assert_eq!(object(&["simulate", &led])["verdict"]["silent_force"], json!([true, true, true]));
     for command in ["joints", "spectrum", "plan"] {
         refuses(&[command, "carrier-and-wrist"], "this is an assembly of several machines");
-        refuses(&[command, "four-freedoms"], "this is a scenario of an assembly");
+        refuses(&[command, "wrist-across"], "this is a scenario of an assembly");
         refuses(&[command, &led], "this is a scenario of an assembly");
     }
     for command in ["design", "layers"] {
         refuses(&[command, &own], "this is an assembly of several machines");
-        refuses(&[command, "four-freedoms"], "this is a scenario of an assembly");
+        refuses(&[command, "wrist-across"], "this is a scenario of an assembly");
     }
     refuses(&["simulate", "nowhere"], "arm-against-arm");
 }

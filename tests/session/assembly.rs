@@ -105,8 +105,9 @@ fn built_in_scenarios_show_their_point() {
     let [f, t] = [false, true];
     // The free base of the second is measured by its turn.
     assert_eq!(seen[0], ("four-freedoms", [t; 6], t));
-    assert_eq!((seen[1].0, seen[1].2), ("arm-against-arm", t));
-    assert_eq!(seen[2], ("off-its-pin", [t, t, t, f, f, f], t));
+    assert_eq!(seen[1], ("wrist-across", [t; 6], t));
+    assert_eq!((seen[2].0, seen[2].2), ("arm-against-arm", t));
+    assert_eq!(seen[3], ("off-its-pin", [t, t, t, f, f, f], t));
 }
 
 #[test]

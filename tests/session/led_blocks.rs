@@ -16,7 +16,7 @@ fn builtin(name: &str) -> AssemblyScenario {
     found.expect("an assembly")
 }
 
-const NAMES: [&str; 3] = ["four-freedoms", "arm-against-arm", "off-its-pin"];
+const NAMES: [&str; 4] = ["four-freedoms", "wrist-across", "arm-against-arm", "off-its-pin"];
 
 /// Two blocks on one base: one in the plane, one across; the second reacts, as it is off balance.
 fn reacting() -> AssemblyScenario {
@@ -117,7 +117,7 @@ fn a_session_of_blocks_is_saved_and_opened_again() {
 /// Machine and base of a block belong to its assembly.
 #[test]
 fn a_block_keeps_its_machine_and_its_base() {
-    let mut session = Session::open(builtin("four-freedoms").leading(1)).expect("it opens");
+    let mut session = Session::open(builtin("wrist-across").leading(1)).expect("it opens");
     let before = session.frame().to_owned();
     for edit in [
         Edit::set("link.1.mass", 2.0),
@@ -213,6 +213,6 @@ fn a_planned_change_of_b_is_followed() {
     }
     let text = AssemblyScenario::of(&session.to_scenario()).expect("an assembly").to_toml();
     assert!(text.contains("against = [\"left\", \"right\"]"), "{text}");
-    let why = builtin("four-freedoms").bind([0, 1]).expect_err("planes that cross");
+    let why = builtin("wrist-across").bind([0, 1]).expect_err("planes that cross");
     assert!(why.contains("at 90.00°: want parallel planes"), "{why}");
 }

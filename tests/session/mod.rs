@@ -24,6 +24,7 @@ mod shared_task;
 mod sitting;
 mod sketch;
 mod smooth;
+mod tip_path;
 mod undo;
 mod verdict;
 mod ways;

@@ -77,7 +77,7 @@ const PICTURES: [(&str, Shown); 16] = [
     ("tower", Shown::Scene("case-3", 0.62, ViewKind::Tower)),
     ("joints", Shown::Scene("case-1", 0.5, ViewKind::Joints)),
     ("assembly", Shown::Window("arm-against-arm", 1.4, Vec::new)),
-    ("assembly-wrist", Shown::Scene("four-freedoms", 1.0, ViewKind::Space)),
+    ("assembly-wrist", Shown::Scene("wrist-across", 1.0, ViewKind::Space)),
     ("assembly-off-its-pin", Shown::Scene("off-its-pin", 0.5, ViewKind::Space)),
     ("paper-table-1", Shown::Paper(&[PaperFigure::Table1], 4.0)),
     ("paper-fig-3", Shown::Paper(&[PaperFigure::Fig3], 4.0)),

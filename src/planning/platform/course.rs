@@ -69,7 +69,12 @@ pub fn follow(
 }
 
 /// Returns the angles after a way of the place, m, by the method of Runge and Kutta of fourth order.
-fn stepped(chain: &PlatformChain, choice: FreedomChoice, from: &DVector<f64>, way: &Vector3<f64>) -> Option<DVector<f64>> {
+fn stepped(
+    chain: &PlatformChain,
+    choice: FreedomChoice,
+    from: &DVector<f64>,
+    way: &Vector3<f64>,
+) -> Option<DVector<f64>> {
     if way.norm() == 0.0 {
         return Some(from.clone());
     }

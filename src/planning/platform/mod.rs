@@ -19,5 +19,5 @@ mod pose;
 
 pub use chain::{ChainBlock, PlatformChain};
 pub use choice::FreedomChoice;
-pub use course::{Stopped, StopReason, follow};
+pub use course::{StopReason, Stopped, follow};
 pub use pose::{NearestPlace, pose_at};

@@ -12,8 +12,7 @@ const STARTS: usize = 96;
 const MAX_STEPS: usize = 80;
 
 /// Primes, whose square roots generate the sequence of samples.
-const PRIMES: [f64; 16] =
-    [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0, 41.0, 43.0, 47.0, 53.0];
+const PRIMES: [f64; 16] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0, 41.0, 43.0, 47.0, 53.0];
 
 /// The nearest place that was found to one that is not reached.
 #[derive(Clone, Debug, PartialEq)]

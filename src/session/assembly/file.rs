@@ -482,7 +482,19 @@ impl AssemblyScenario {
         }
         let (name, summary) = (assembly.name.clone(), assembly.summary.clone());
         let (title, base, step) = (name.clone(), AssemblyBase::Fixed, USUAL_STEP);
-        Ok(Self { name, title, summary, assembly, tasks, base, step, duration: None, lead: 0, tip: None, against: None })
+        Ok(Self {
+            name,
+            title,
+            summary,
+            assembly,
+            tasks,
+            base,
+            step,
+            duration: None,
+            lead: 0,
+            tip: None,
+            against: None,
+        })
     }
 
     /// Returns the scenario with keys of its file changed; the word `default` removes one. Errors name `label`.

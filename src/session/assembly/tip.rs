@@ -12,9 +12,7 @@ use crate::gentle_motion::gentle_motion;
 use stillbase_mechanics::assembly::{Assembly, BlockState, MAX_BLOCKS};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::curves::{Path, Samples};
-use stillbase_planning::platform::{
-    ChainBlock, FreedomChoice, PlatformChain, StopReason, Stopped, follow, pose_at,
-};
+use stillbase_planning::platform::{ChainBlock, FreedomChoice, PlatformChain, StopReason, Stopped, follow, pose_at};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::{Profile, TimeLaw};
 use stillbase_planning::{Motion, Reference};
@@ -147,7 +145,9 @@ impl TipChain {
             let space = PoseSpace::of(&machine);
             let space = space.or_else(|why| wrong("block", format!("block {} cannot hold a b: {why}", own.name)))?;
             let pose = own.machine.spec().pose.as_ref();
-            let pose = pose.filter(|pose| pose.len() == machine.drives()).map(|pose| PerDrive::from_fn(pose.len(), |k| pose[k]));
+            let pose = pose
+                .filter(|pose| pose.len() == machine.drives())
+                .map(|pose| PerDrive::from_fn(pose.len(), |k| pose[k]));
             let b = match (b.get(&own.name), &pose) {
                 (Some(b), _) if b.is_finite() && b.abs() <= MAX_PLACE => *b,
                 (Some(_), _) => return wrong("b", format!("b of {} is no angle: want a finite number, rad", own.name)),
@@ -284,15 +284,21 @@ impl TipPath {
             let all = follow(&of.chain, choice, from.clone(), &places).or_else(|stopped| {
                 let reached = &places[stopped.point - 1];
                 let others = <FreedomChoice as Choice>::ALL.iter().copied().filter(|other| *other != choice);
-                let mut others = others.filter(|other| {
-                    start(*other).is_ok_and(|from| follow(&of.chain, *other, from, &places).is_ok())
-                });
+                let mut others = others
+                    .filter(|other| start(*other).is_ok_and(|from| follow(&of.chain, *other, from, &places).is_ok()));
                 let mend = match others.next() {
                     Some(other) => format!("choice = \"{}\"", other.words().file),
                     None => "other points or another b".to_owned(),
                 };
                 let why = of.why(assembly, &stopped);
-                wrong("to", format!("is not reached with choice = \"{}\": at {} {why}; want {mend}", choice.words().file, typed(reached)))
+                wrong(
+                    "to",
+                    format!(
+                        "is not reached with choice = \"{}\": at {} {why}; want {mend}",
+                        choice.words().file,
+                        typed(reached)
+                    ),
+                )
             })?;
             let angles: Vec<Vec<DriveAngles>> = all.iter().map(|a| of.chain.lift(a.as_slice())).collect();
             let samples = |whole: f64| -> Option<Vec<Samples>> {
@@ -303,7 +309,11 @@ impl TipPath {
                 (0..of.blocks.len()).map(of_block).collect()
             };
             let Some(unit) = samples(1.0) else { return wrong("to", "gives no motion: want other points") };
-            let Some(motions) = unit.iter().map(|own| Some(Motion { path: Path::Table(own.path(0.0)?), profile: Profile::running(1.0) })).collect::<Option<Vec<_>>>() else {
+            let Some(motions) = unit
+                .iter()
+                .map(|own| Some(Motion { path: Path::Table(own.path(0.0)?), profile: Profile::running(1.0) }))
+                .collect::<Option<Vec<_>>>()
+            else {
                 return wrong("to", "gives no motion: want other points");
             };
             if instants < INSTANTS[1] && self.strays(&of, &points, law, &motions) > PATH_TOLERANCE {
@@ -334,7 +344,12 @@ impl TipPath {
     }
 
     /// Returns instants as shares of the time, and the place at each, m.
-    fn instants(&self, points: &[(&'static str, Vector3<f64>)], law: TimeLaw, count: usize) -> (Vec<f64>, Vec<Vector3<f64>>) {
+    fn instants(
+        &self,
+        points: &[(&'static str, Vector3<f64>)],
+        law: TimeLaw,
+        count: usize,
+    ) -> (Vec<f64>, Vec<Vector3<f64>>) {
         let shares = Self::shares(points);
         let (mut times, mut places) = (vec![0.0], vec![points[0].1]);
         for (leg, pair) in points.windows(2).enumerate() {
@@ -397,7 +412,12 @@ fn least_time(
                     let (weight, motion) = (weights[*place][k], torques[*place][k] - weights[*place][k]);
                     let room = limit - weight * motion.signum();
                     if limit <= weight.abs() {
-                        let said = format!("weight alone asks {:.4} N m of drive {} of {}: want other points", weight.abs(), drive.name, block.name);
+                        let said = format!(
+                            "weight alone asks {:.4} N m of drive {} of {}: want other points",
+                            weight.abs(),
+                            drive.name,
+                            block.name
+                        );
                         return wrong("time", said);
                     }
                     squared = squared.max(motion.abs() / room);

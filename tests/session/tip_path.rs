@@ -1,0 +1,260 @@
+//! Paths of the last platform in space: against central differences of the assembly's own places, and with proposals typed
+//! back.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use stillbase::mechanics::assembly::{Assembly, BlockState, MAX_BLOCKS, builtin_assemblies};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive};
+use stillbase::session::assembly::{AssemblyFrame, AssemblyScenario};
+
+fn builtin(name: &str) -> Assembly {
+    builtin_assemblies().iter().find(|own| own.name == name).expect("built in").clone()
+}
+
+fn scenario(assembly: &Assembly, tip: &str) -> Result<AssemblyScenario, String> {
+    let text = format!("machine = \"{}\"\n[tip]\n{tip}", assembly.name);
+    AssemblyScenario::parse(&text, "tip.toml", assembly.clone()).map_err(|why| why.to_string())
+}
+
+fn frames(scenario: &AssemblyScenario) -> Vec<AssemblyFrame> {
+    let mut all = Vec::new();
+    let see = |frame: &AssemblyFrame| {
+        all.push(frame.clone());
+        true
+    };
+    let verdict = scenario.run(see).expect("a run");
+    assert_eq!(verdict.silent(), [true; 6], "{verdict:?}");
+    all
+}
+
+fn tip(assembly: &Assembly, block: usize, q: &[Vec<f64>]) -> Vector3<f64> {
+    let none = PerDrive::zeros(0);
+    let mut states = [BlockState { q: DriveAngles(none), qd: none, qdd: none }; MAX_BLOCKS];
+    for (state, q) in states.iter_mut().zip(q) {
+        let still = PerDrive::zeros(q.len());
+        *state = BlockState { q: DriveAngles(PerDrive::from_fn(q.len(), |k| q[k])), qd: still, qdd: still };
+    }
+    assembly.end_effectors(&states)[block]
+}
+
+/// Directions of all drives that change no b, of unit length and at right angles, as columns.
+fn holding_b(assembly: &Assembly) -> DMatrix<f64> {
+    let count: usize = assembly.blocks().iter().map(|block| block.machine.drives()).sum();
+    let mut rows = DMatrix::zeros(assembly.blocks().len(), count);
+    let mut at = 0;
+    for (i, block) in assembly.blocks().iter().enumerate() {
+        for (k, lambda) in assembly.conditions(i).inertia.lambda().iter().enumerate() {
+            rows[(i, at + k)] = *lambda;
+        }
+        at += block.machine.drives();
+    }
+    null_space(&rows)
+}
+
+/// Returns a basis of what a matrix takes to zero, of unit length and at right angles.
+fn null_space(of: &DMatrix<f64>) -> DMatrix<f64> {
+    let square = of.transpose() * of;
+    let eigen = square.symmetric_eigen();
+    let most = eigen.eigenvalues.max();
+    let columns: Vec<_> = (0..of.ncols()).filter(|k| eigen.eigenvalues[*k] < 1e-9 * most).collect();
+    DMatrix::from_fn(of.ncols(), columns.len(), |row, k| eigen.eigenvectors[(row, columns[k])])
+}
+
+fn angles(assembly: &Assembly, frame: &AssemblyFrame) -> Vec<Vec<f64>> {
+    frame.states[..assembly.blocks().len()].iter().map(|state| state.q.0.to_vec()).collect()
+}
+
+/// J of all drives, by central differences.
+fn jacobian(assembly: &Assembly, block: usize, q: &[Vec<f64>]) -> DMatrix<f64> {
+    let mut columns = Vec::new();
+    for i in 0..q.len() {
+        for k in 0..q[i].len() {
+            let moved = |by: f64| {
+                let mut other = q.to_vec();
+                other[i][k] += by;
+                tip(assembly, block, &other)
+            };
+            columns.push((moved(1e-5) - moved(-1e-5)) / 2e-5);
+        }
+    }
+    DMatrix::from_fn(3, columns.len(), |row, k| columns[k][row])
+}
+
+const CASES: [(&str, &str); 4] = [
+    ("carrier-and-arm", "to = [0.45, 0.55, 0.1]\ntime = 1.2\n"),
+    ("carrier-and-arm", "from = [0.45, 0.35, 0.09]\nto = [0.52, 0.42, 0.06]\nvia = [[0.40, 0.52, 0.14]]\ntime = 2.0\n"),
+    ("carrier-and-arm", "to = [0.40, 0.45, 0.08]\nlaw = \"septic\"\ntime = 1.0\n"),
+    ("carrier-and-wrist", "to = [0.42, 0.45, 0.1]\ntime = 1.0\n"),
+];
+
+/// The end effector keeps to its straight way and its law, every block its b, and nothing reaches the base.
+#[test]
+fn the_end_effector_goes_straight_and_every_b_is_held() {
+    for (name, text) in CASES {
+        let assembly = builtin(name);
+        for choice in ["least-rates", "mid-range"] {
+            let scenario = scenario(&assembly, &format!("{text}choice = \"{choice}\"\n")).expect(text);
+            let all = frames(&scenario);
+            let block = scenario.tip.as_ref().expect("a path").blocks.last().copied().expect("a block");
+            let path = &scenario.tip.as_ref().expect("a path").path;
+            let mut points = vec![all[0].tips[block]];
+            points.extend(path.via.iter().map(|p| Vector3::from(*p)));
+            points.push(path.to.map(Vector3::from).expect("an end"));
+            for frame in &all {
+                let p = frame.tips[block];
+                let off = |pair: &[Vector3<f64>]| {
+                    let way = pair[1] - pair[0];
+                    let share = ((p - pair[0]).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+                    (p - pair[0] - share * way).norm()
+                };
+                let off = points.windows(2).map(off).fold(f64::INFINITY, f64::min);
+                assert!(off < 1e-6, "{name} {choice}: {off} m off at {} s", frame.time);
+            }
+            let end = all.last().expect("a frame");
+            assert!((end.tips[block] - points[points.len() - 1]).norm() < 1e-6, "{name}: {}", end.tips[block]);
+            let b = |frame: &AssemblyFrame, i: usize| assembly.conditions(i).inertia.lambda().dot(&frame.states[i].q);
+            for i in 0..assembly.blocks().len() {
+                let most = all.iter().map(|frame| (b(frame, i) - b(&all[0], i)).abs()).fold(0.0, f64::max);
+                assert!(most < 1e-9, "{name}: b of block {i} changes by {most}");
+            }
+            // What is written gives the same motion.
+            let again = AssemblyScenario::parse(&scenario.to_toml(), "again.toml", assembly.clone()).expect("valid");
+            assert_eq!(again.tasks, scenario.tasks);
+        }
+    }
+}
+
+/// The rates have no part in the directions that move neither the end effector nor a b.
+#[test]
+fn rates_are_the_least() {
+    let mut seen = 0;
+    for (name, text) in CASES {
+        let assembly = builtin(name);
+        let scenario = scenario(&assembly, text).expect(text);
+        let block = assembly.blocks().len() - 1;
+        let held = holding_b(&assembly);
+        for frame in frames(&scenario).iter().step_by(37) {
+            let q = angles(&assembly, frame);
+            let rates: Vec<f64> =
+                frame.states[..q.len()].iter().flat_map(|state| state.qd.iter().copied().collect::<Vec<_>>()).collect();
+            let rates = DVector::from_vec(rates);
+            let free = &held * null_space(&(jacobian(&assembly, block, &q) * &held));
+            let idle = (free.transpose() * &rates).norm();
+            assert!(idle <= 1e-4 * rates.norm() + 1e-6, "{name} at {} s: {idle} of {}", frame.time, rates.norm());
+            seen += free.ncols();
+        }
+    }
+    assert!(seen > 100, "{seen}");
+}
+
+/// While the arm alone can follow, what carries it stands still; and not with another choice.
+#[test]
+fn a_carrier_stands_still_where_it_can() {
+    let assembly = builtin("carrier-and-arm");
+    let way = "from = [0.4337, 0.3873, 0.0971]\nto = [0.4237, 0.3873, 0.0871]\ntime = 1.0\n";
+    for (choice, stands) in [("still-carrier", true), ("least-rates", false)] {
+        let all = frames(&scenario(&assembly, &format!("{way}choice = \"{choice}\"\n")).expect("a path"));
+        let moved =
+            (0..3).map(|k| (all[all.len() / 2].states[0].q[k] - all[0].states[0].q[k]).abs()).fold(0.0, f64::max);
+        assert_eq!(moved < 1e-9, stands, "{choice}: {moved} rad");
+    }
+}
+
+/// A closed way brings mid-range angles back, and they are nearest to the middles of their ranges all along.
+#[test]
+fn mid_range_comes_back() {
+    let assembly = builtin("carrier-and-arm");
+    let text =
+        "from = [0.45, 0.35, 0.09]\nto = [0.52, 0.42, 0.06]\nvia = [[0.40, 0.52, 0.14]]\nclosed = true\ntime = 3.0\n";
+    let held = holding_b(&assembly);
+    for (choice, comes_back) in [("mid-range", true), ("least-rates", false)] {
+        let all = frames(&scenario(&assembly, &format!("{text}choice = \"{choice}\"\n")).expect("a path"));
+        let (first, last) = (angles(&assembly, &all[0]).concat(), angles(&assembly, &all[all.len() - 1]).concat());
+        let off = first.iter().zip(&last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert_eq!(off < 1e-6, comes_back, "{choice}: {off} rad");
+        if !comes_back {
+            continue;
+        }
+        for frame in all.iter().step_by(61) {
+            let q = angles(&assembly, frame);
+            let free = &held * null_space(&(jacobian(&assembly, 1, &q) * &held));
+            // Σ ((a − m)/h)² does not change along what is free.
+            let measure = |by: f64| -> f64 {
+                let mut sum = 0.0;
+                for (i, (block, own)) in assembly.blocks().iter().zip(&q).enumerate() {
+                    let moved: Vec<f64> = (0..own.len()).map(|k| own[k] + by * free[(3 * i + k, 0)]).collect();
+                    for angle in block.machine.angles() {
+                        let a = angle.value(&moved);
+                        let (low, high) = (angle.limits.start(), angle.limits.end());
+                        sum += ((a - 0.5 * (low + high)) / (0.5 * (high - low))).powi(2);
+                    }
+                }
+                sum
+            };
+            let slope = (measure(1e-5) - measure(-1e-5)) / 2e-5;
+            assert!(slope.abs() < 1e-5, "{slope} at {} s", frame.time);
+            assert!(measure(1e-2) > measure(0.0) && measure(-1e-2) > measure(0.0));
+        }
+    }
+}
+
+/// Without a time, the drive that is asked most is just at its limit.
+#[test]
+fn the_least_time_keeps_all_limits() {
+    for text in ["to = [0.45, 0.55, 0.1]\n", "from = [0.45, 0.35, 0.09]\nto = [0.52, 0.42, 0.06]\n"] {
+        let assembly = builtin("carrier-and-arm");
+        let all = frames(&scenario(&assembly, text).expect(text));
+        let mut most = 0.0_f64;
+        for frame in &all {
+            for (k, drive) in assembly.blocks()[0].machine.spec().drives.iter().enumerate() {
+                most = most.max(frame.torques[0][k].abs() / drive.torque_limit.expect("a limit"));
+            }
+        }
+        assert!((0.99..1.001).contains(&most), "{most}");
+    }
+    let why = scenario(&builtin("two-arms"), "to = [0.6, 0.4, 0.0]\nblock = \"nobody\"\n").expect_err("no block");
+    assert!(why.contains("tip.block: no block \"nobody\": want one of"), "{why}");
+}
+
+/// What is refused says what would do, and that does.
+#[test]
+fn proposals_work_as_printed() {
+    let assembly = builtin("carrier-and-arm");
+    let refused = |text: &str| scenario(&assembly, text).expect_err(text);
+    for text in [
+        "to = [0.45, 0.55, 0.9]\n",
+        "to = [0.45, 5.0, 0.1]\n",
+        "to = [-3.0, 0.1, -2.0]\n",
+        "from = [9.0, 0.0, 0.0]\nto = [0.45, 0.55, 0.1]\n",
+    ] {
+        let why = refused(text);
+        let key = if why.contains("tip.from") { "from" } else { "to" };
+        let proposed = why.rsplit_once("as [").and_then(|(_, rest)| rest.split_once(']')).expect(&why).0;
+        let kept: Vec<&str> = text.lines().filter(|line| !line.starts_with(key)).collect();
+        let mended = format!("{}\n{key} = [{proposed}]\nchoice = \"mid-range\"\n", kept.join("\n"));
+        // The place itself is reached; the way to it may be longer than what it was asked for.
+        match scenario(&assembly, &mended) {
+            Ok(_) => {}
+            Err(why) => assert!(!why.contains("is not reached at these b"), "{mended}{why}"),
+        }
+    }
+    let way = "to = [0.45, 0.55, 0.1]\ntime = 1.0\n";
+    let why = refused(&format!("{way}choice = \"still-carrier\"\n"));
+    let choice = why.rsplit_once("want choice = ").expect(&why).1;
+    scenario(&assembly, &format!("{way}choice = {choice}\n")).expect("as proposed");
+    for (text, words) in [
+        ("time = 1.0\n", "tip.to: want a place"),
+        ("to = [0.4, 0.4]\n", "want three numbers"),
+        ("to = [0.45, 0.55, nan]\n", "want three numbers, m"),
+        ("to = [0.45, 0.55, 0.1]\ntime = -1.0\n", "tip.time: is -1"),
+        ("to = [0.45, 0.55, 0.1]\nlaw = \"fastest\"\n", "tip.law: want quintic or septic"),
+        ("to = [0.45, 0.55, 0.1]\nb = { arm = nan }\n", "tip.b: b of arm is no angle"),
+        (
+            "to = [0.45, 0.55, 0.1]\nb = { leg = 1.0 }\n",
+            "no block \"leg\" moves this end effector: want carrier or arm",
+        ),
+        ("to = [0.45, 0.55, 0.1]\n[task.arm]\nkind = \"reactionless\"\n", "[tip] leads block arm"),
+    ] {
+        let why = refused(text);
+        assert!(why.contains(words), "{text}{why}");
+    }
+}
