@@ -8,7 +8,8 @@
 //!
 //! Of an assembly each block is a body at its mount, whose plane is that of its axes x and y; names begin with that of the
 //! block. A platform is a body without mass on the end effector. A hinge turns it, and an equality keeps its orientation.
-//! A base that floats has a free joint. In space inertias about all axes count: links are thin bars.
+//! A base that floats has a free joint. In space inertias about all axes count: links are thin bars unless their
+//! file states more.
 //!
 //! Every rotor is a separate body. Behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
 //! whereas an armature would add to the inertia only. Inertias about axes in the plane do not affect a plane motion;

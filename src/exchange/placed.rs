@@ -7,10 +7,12 @@ use super::look::DRAWN_BAR_RADIUS;
 use super::tree::Tree;
 use super::xml::quoted;
 use stillbase_mechanics::assembly::{Assembly, Block, Mount, SpatialBase};
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{Machine, TransverseInertia};
 
 /// Least inertia that is written for a body that moves, kg m²: MuJoCo treats less as none.
 const LEAST_INERTIA: f64 = 1e-12;
+/// Part of an inertia that a sum of moments may be off by.
+const ROUNDING: f64 = 1e-14;
 
 /// What a model shows.
 pub struct Modelled<'a> {
@@ -128,13 +130,31 @@ impl<'a> Placed<'a> {
         [machine.end_effector()[part.drive] - part.root[part.drive], height]
     }
 
-    /// Returns the inertia of a link or payload about the axes of its link, kg m². In space it is a thin bar, as
-    /// [`SpatialBase`] has it; otherwise only the last number counts, and any of at least half of it go with it.
-    pub fn of_bar(&self, inertia: f64) -> [f64; 3] {
-        match self.block {
-            Some(_) => [inertia.min(LEAST_INERTIA), inertia, inertia],
-            None => [0.6 * inertia, 0.6 * inertia, inertia],
+    /// Returns the inertia of a link with its counterweights about the axes of the link, kg m².
+    pub fn of_link(&self, j: usize) -> Matrix3<f64> {
+        let (stated, inertia) = (self.machine.spec().links[j].states_transverse(), self.machine.links()[j].inertia);
+        self.of_body(inertia, stated, || self.machine.link_transverse(j))
+    }
+
+    /// Returns the inertia of the payload about the axes of the link that holds it, kg m².
+    pub fn of_payload(&self) -> Matrix3<f64> {
+        let payload = self.machine.spec().payload;
+        self.of_body(payload.inertia, payload.states_transverse(), || payload.transverse())
+    }
+
+    /// Returns the inertia of a body. In space all of it counts, as for [`SpatialBase`]. Of a machine by itself that does
+    /// not state the rest only the last number counts, and any of at least half of it go with it.
+    fn of_body(&self, inertia: f64, stated: bool, transverse: impl Fn() -> TransverseInertia) -> Matrix3<f64> {
+        if self.block.is_none() && !stated {
+            return Matrix3::from_diagonal(&Vector3::new(0.6 * inertia, 0.6 * inertia, inertia));
         }
+        let TransverseInertia { along, across, product } = transverse();
+        if along == 0.0 && product == 0.0 {
+            return Matrix3::from_diagonal(&Vector3::new(inertia.min(LEAST_INERTIA), across, inertia));
+        }
+        // Of flat bodies rounding must not break the triangle inequality.
+        let more = inertia.min(LEAST_INERTIA) + ROUNDING * inertia;
+        Matrix3::new(along + more, -product, 0.0, -product, across + more, 0.0, 0.0, 0.0, inertia)
     }
 
     /// Returns the same of a rotor about the axes of its seat; in space it has the least that a body of this inertia can

@@ -12,7 +12,8 @@
 //! gravity torques are those of the machine.
 //!
 //! Each block of an assembly has a base at its mount, and names that begin with that of the block. A platform turns back by
-//! what its end effector turned, with mimic joints too. In space inertias about all axes count: links are thin bars.
+//! what its end effector turned, with mimic joints too. In space inertias about all axes count: links are thin bars unless their
+//! file states more.
 //!
 //! # What URDF cannot express
 //! URDF has no elements for gravity, for pins that close loops, and for limits of acceleration and jerk. It has none
@@ -234,7 +235,7 @@ impl<'a> Model<'a> {
             TreePart::Link(j) => {
                 let (link, sign) = (&machine.links()[j], machine.resolved_links()[j].sign);
                 let at = [sign * link.com, sign * link.com_normal, link.axial];
-                Body::new(at, link.mass, placed.of_bar(link.inertia))
+                Body { at, mass: link.mass, inertia: placed.of_link(j) }
             }
             // The rotor's mass is part of the link that carries it.
             TreePart::Rotor(k) => {
@@ -246,7 +247,7 @@ impl<'a> Model<'a> {
                 let [along, left] = payload.offset.map(|x| sign * x);
                 // The end effector of a block has the height of its payload.
                 let height = payload.axial - placed.end()[1];
-                Body::new([along, left, height], payload.mass, placed.of_bar(payload.inertia))
+                Body { at: [along, left, height], mass: payload.mass, inertia: placed.of_payload() }
             }
             TreePart::Base
             | TreePart::Shaft(_)

@@ -264,7 +264,7 @@ impl LengthSearch {
                 link.mass *= scale;
                 link.com *= scale;
                 link.com_normal *= scale;
-                link.inertia *= scale.powi(3);
+                link.scale_inertia(scale.powi(3));
                 if let Length::Metres(x) = &mut link.length {
                     *x = now;
                 }

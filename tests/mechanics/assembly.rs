@@ -5,8 +5,8 @@ use serde_json::Value;
 use stillbase::mechanics::assembly::{
     Assembly, AssemblySpec, Attitude, BlockState, Momentum, Reacting, SpatialBase, SpatialWrench, parse,
 };
-use stillbase::mechanics::machine::{FileError, Machine, named, parse as parse_machine};
-use stillbase::mechanics::planar::{DriveAngles, PerDrive, unit};
+use stillbase::mechanics::machine::{Counterweight, FileError, Machine, named, parse as parse_machine};
+use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 use crate::support::random::{a_machine, an_assembly};
 use crate::support::{Noise, array, close, family_machine, numbers};
@@ -134,13 +134,14 @@ fn a_floating_base_turns_as_in_the_reference() {
 }
 
 /// A point mass, or a rotor without mass that spins about an axis.
-enum Piece {
+pub enum Piece {
     Mass(f64, Vector3<f64>),
     Rotor(f64, Vector3<f64>, f64),
 }
 
-/// Every link as two points as far apart as its inertia says, in axes of the base.
-fn pieces(assembly: &Assembly, states: &[BlockState]) -> Vec<Piece> {
+/// Every link and every counterweight as six points, in pairs as far apart on its axes as its moments of inertia say, in
+/// axes of the base.
+pub fn pieces(assembly: &Assembly, states: &[BlockState]) -> Vec<Piece> {
     let mut all = Vec::new();
     let mut mounts: Vec<Option<Vector3<f64>>> = vec![None; states.len()];
     while mounts.iter().any(Option::is_none) {
@@ -157,23 +158,38 @@ fn pieces(assembly: &Assembly, states: &[BlockState]) -> Vec<Piece> {
     }
     for ((block, state), mount) in assembly.blocks().iter().zip(states).zip(mounts) {
         let (machine, mount) = (&block.machine, mount.expect("found"));
-        let mut body =
-            |mass: f64, inertia: f64, height: f64, drive: usize, chain: [stillbase::mechanics::planar::Vector; 8]| {
-                let centre: stillbase::mechanics::planar::Vector =
-                    state.q.iter().zip(chain).map(|(q, a)| a * unit(*q)).sum();
-                let half = unit(state.q[drive]) * (inertia / mass).sqrt();
-                for end in [centre + half, centre - half] {
-                    all.push(Piece::Mass(0.5 * mass, mount + block.mount.axes * Vector3::new(end.re, end.im, height)));
+        let chained = |chain: &[f64]| -> Vector { state.q.iter().zip(chain).map(|(q, a)| *a * unit(*q)).sum() };
+        // Moments about the axes along, across and normal to the plane; the place is along the link and to its left.
+        let mut body = |mass: f64, [a, c, n]: [f64; 3], height: f64, from: Vector, e: Vector, at: [f64; 2]| {
+            let squared = [0.5 * (c + n - a), 0.5 * (a + n - c), 0.5 * (a + c - n)];
+            let centre = from + e * Vector::new(at[0], at[1]);
+            for (axis, second) in squared.into_iter().enumerate() {
+                let away = (3.0 * second.max(0.0) / mass).sqrt();
+                for away in [away, -away] {
+                    let mut own = [0.0; 3];
+                    own[axis] = away;
+                    let place = centre + e * Vector::new(own[0], own[1]);
+                    let place = Vector3::new(place.re, place.im, height + own[2]);
+                    all.push(Piece::Mass(mass / 6.0, mount + block.mount.axes * place));
                 }
-            };
-        for (j, link) in machine.links().iter().enumerate() {
-            let drive = machine.resolved_links()[j].drive;
-            body(link.mass, link.inertia, link.axial, drive, machine.com_chain(j));
+            }
+        };
+        let spec = machine.spec();
+        for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
+            let (from, e) = (chained(&part.root), part.sign * unit(state.q[part.drive]));
+            let own = [link.inertia_along, link.inertia_across.unwrap_or(link.inertia), link.inertia];
+            body(link.mass, own, link.axial, from, e, [link.com, link.com_normal]);
+            for weight in spec.counterweights.iter().filter(|weight| weight.link == link.name) {
+                let flat = flat_moments(weight);
+                body(weight.mass, flat, link.axial, from, e, [weight.at, weight.across]);
+            }
         }
-        let payload = machine.spec().payload;
+        let payload = spec.payload;
         if payload.mass > 0.0 {
-            let drive = machine.resolved_links()[machine.end_link()].drive;
-            body(payload.mass, payload.inertia, payload.axial, drive, machine.payload_chain());
+            let part = &machine.resolved_links()[machine.end_link()];
+            let e = part.sign * unit(state.q[part.drive]);
+            let own = [payload.inertia_along, payload.inertia_across.unwrap_or(payload.inertia), payload.inertia];
+            body(payload.mass, own, payload.axial, chained(machine.end_effector()), e, payload.offset);
         }
         let on = |k: usize| {
             let name = machine.spec().drives[k].on.as_deref()?;
@@ -189,8 +205,34 @@ fn pieces(assembly: &Assembly, states: &[BlockState]) -> Vec<Piece> {
     all
 }
 
+/// Moments of a counterweight as a flat body about the axes along and across its link and normal to the plane, by a sum
+/// over sectors of its circles.
+fn flat_moments(weight: &Counterweight) -> [f64; 3] {
+    let mass = weight.mass;
+    if weight.length > 0.0 {
+        let [length, width] = [weight.length, weight.width].map(|side| mass * side * side / 12.0);
+        return [width, length, width + length];
+    }
+    if weight.radius == 0.0 {
+        return [0.0; 3];
+    }
+    // The sums are exact: squares of cosines repeat after half a turn.
+    let (sectors, whole) = (16, if weight.half { 0.5 } else { 1.0 } * std::f64::consts::TAU);
+    let ring = |n: i32| (weight.radius.powi(n) - weight.inner_radius.powi(n)) / f64::from(n);
+    let mut sums = [0.0; 3];
+    for i in 0..sectors {
+        let e = unit(whole * ((f64::from(i) + 0.5) / f64::from(sectors) - 0.5));
+        sums[0] += ring(2);
+        sums[1] += ring(4) * e.im * e.im;
+        sums[2] += ring(4) * e.re * e.re;
+    }
+    let centre = weight.circle_at() - weight.at;
+    let [along, across] = [mass * sums[1] / sums[0], mass * (sums[2] / sums[0] - centre * centre)];
+    [along, across, along + across]
+}
+
 /// The states a time later.
-fn after(states: &[BlockState], t: f64) -> Vec<BlockState> {
+pub fn after(states: &[BlockState], t: f64) -> Vec<BlockState> {
     let one = |s: &BlockState| BlockState {
         q: DriveAngles(s.q.0.plus(t, &s.qd).plus(0.5 * t * t, &s.qdd)),
         qd: s.qd.plus(t, &s.qdd),
@@ -220,7 +262,7 @@ fn momentum(assembly: &Assembly, states: &[BlockState]) -> Momentum {
     sum
 }
 
-fn random_states(noise: &mut Noise, assembly: &Assembly) -> Vec<BlockState> {
+pub fn random_states(noise: &mut Noise, assembly: &Assembly) -> Vec<BlockState> {
     let block = |n: usize, noise: &mut Noise| {
         let mut any = |most: f64| PerDrive::from_fn(n, |_| noise.between(-most, most));
         BlockState { q: DriveAngles(any(3.0)), qd: any(1.5), qdd: any(3.0) }

@@ -15,6 +15,7 @@ pub mod inside;
 mod joint_forces;
 mod keep;
 mod machine_file;
+mod moving_base;
 pub mod nine_body;
 mod parts;
 mod pin_friction;

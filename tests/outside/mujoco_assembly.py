@@ -45,6 +45,8 @@ def found(model, data, asked, motion):
         "open": float(open_by),
         "moves": float(moves_by),
         "torque": (columns.T @ data.qfrc_inverse[hinges:]).tolist(),
+        # What moves a base that floats: a force in space, and a moment about its origin in its axes.
+        "on_base": data.qfrc_inverse[:hinges].tolist(),
         # They read what holds the blocks; what these do to the base is the opposite.
         "force": (-data.sensor("base force").data).tolist(),
         "moment": (-data.sensor("base moment").data).tolist(),

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use nalgebra::Vector3;
 use stillbase::mechanics::assembly::{self, Assembly};
 use stillbase::mechanics::balance::design;
-use stillbase::mechanics::machine::{Counterweight, Machine, parse, to_toml};
+use stillbase::mechanics::machine::{Counterweight, CounterweightShape, Machine, parse, to_toml};
 use stillbase::mechanics::planar::{PerDrive, Vector, unit};
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 
@@ -190,6 +190,27 @@ fn frame(noise: &mut Noise) -> [[f64; 3]; 2] {
     [x.into(), y.into()]
 }
 
+/// Moments of inertia about two axes in the plane of a body with a moment about the third.
+fn in_plane(noise: &mut Noise, inertia: f64) -> (f64, Option<f64>) {
+    let (share, thickness) = (noise.between(0.0, 1.0), noise.between(0.0, 0.5) * inertia);
+    (share * inertia + thickness, Some((1.0 - share) * inertia + thickness))
+}
+
+/// A counterweight of any shape, or none.
+fn a_counterweight(noise: &mut Noise, link: &str) -> Option<Counterweight> {
+    let at = [noise.between(-0.2, 0.2), noise.between(-0.1, 0.1)];
+    let (radius, inner_radius) = (noise.between(0.05, 0.1), noise.between(0.01, 0.04));
+    let shape = match one_of(noise, 9) {
+        0 => CounterweightShape::Point,
+        1 => CounterweightShape::Disc { radius },
+        2 => CounterweightShape::Ring { radius, inner_radius },
+        3 => CounterweightShape::HalfRing { radius, inner_radius },
+        4 => CounterweightShape::Box { length: radius, width: inner_radius },
+        _ => return None,
+    };
+    Some(Counterweight::new(link, noise.between(0.1, 2.0), at, shape))
+}
+
 /// Two to four random machines with heights, on the base or on each other.
 pub fn an_assembly(noise: &mut Noise) -> Assembly {
     let count = 2 + (noise.between(0.0, 2.999)) as usize;
@@ -205,6 +226,15 @@ pub fn an_assembly(noise: &mut Noise) -> Assembly {
         spec.gravity = [0.0; 2];
         spec.links.iter_mut().for_each(|link| link.axial = noise.between(-0.2, 0.2));
         spec.payload.axial = noise.between(-0.1, 0.1);
+        spec.links.iter_mut().for_each(|link| {
+            if noise.between(0.0, 1.0) < 0.6 {
+                (link.inertia_along, link.inertia_across) = in_plane(noise, link.inertia);
+            }
+        });
+        if noise.between(0.0, 1.0) < 0.5 {
+            (spec.payload.inertia_along, spec.payload.inertia_across) = in_plane(noise, spec.payload.inertia);
+        }
+        spec.counterweights = spec.links.iter().filter_map(|link| a_counterweight(noise, &link.name)).collect();
         let machine = to_toml(&Machine::new(spec).expect("a machine"));
         let on = if i > 0 && noise.between(0.0, 1.0) < 0.6 { format!("b{}", i - 1) } else { "base".into() };
         let at: [f64; 3] = std::array::from_fn(|_| noise.between(-0.5, 0.5));

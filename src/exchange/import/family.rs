@@ -411,6 +411,8 @@ impl Builder<'_> {
             length: Length::Metres(length),
             mass: body.mass,
             inertia: body.inertia,
+            inertia_along: 0.0,
+            inertia_across: None,
             com: rounded(com.re),
             com_normal: rounded(com.im),
             axial: rounded(body.height),

@@ -1,5 +1,7 @@
 //! The bodies of a model: base, links, rotors, payloads and platforms, each in the one that carries it.
 
+use nalgebra::Matrix3;
+
 use super::Model;
 use crate::cut::{Cut, DrawnSize, DrawnWeight};
 use crate::look::{BASE_COLOUR, DRIVE_COLOURS};
@@ -90,14 +92,16 @@ impl Bodies<'_> {
                     line!(self, depth, "<joint {joint}/>");
                 }
                 let (com, inertia) = (base.com, base.inertia);
-                self.inertial(depth, [com.re, com.im, 0.0], base.mass, [0.6 * inertia, 0.6 * inertia, inertia]);
+                self.inertial(
+                    depth,
+                    [com.re, com.im, 0.0],
+                    base.mass,
+                    &diagonal([0.6 * inertia, 0.6 * inertia, inertia]),
+                );
             }
             FloatingBase::Spatial(base) => {
                 line!(self, depth, "<freejoint name=\"base_floats\"/>");
-                let (at, mass, all) = (numbers(base.com.as_slice()), base.mass, &base.inertia);
-                let order = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
-                let inertia = numbers(&order.map(|place| all[place]));
-                line!(self, depth, "<inertial pos=\"{at}\" mass=\"{mass}\" fullinertia=\"{inertia}\"/>");
+                self.full_inertial(depth, base.com.into(), base.mass, &base.inertia);
             }
         }
         let ([x, y, z], [a, b, c]) = base.drawn();
@@ -123,7 +127,7 @@ impl Bodies<'_> {
         let range = limits.map_or(String::new(), |(.., [least, most])| format!(" range=\"{least} {most}\""));
         line!(self, depth + 1, "<joint name=\"{}\"{range}/>", self.model.hinge(i, j));
         let (com, normal, axial) = (part.sign * link.com, part.sign * link.com_normal, link.axial);
-        self.inertial(depth + 1, [com, normal, axial], link.mass, placed.of_bar(link.inertia));
+        self.inertial(depth + 1, [com, normal, axial], link.mass, &placed.of_link(j));
         let (from, to) = reach(part.length, &part.pins);
         if to > from {
             let (from, to) = (part.sign * from, part.sign * to);
@@ -163,8 +167,20 @@ impl Bodies<'_> {
         line!(self, depth, "</body>");
     }
 
-    fn inertial(&mut self, depth: usize, [x, y, z]: [f64; 3], mass: f64, [xx, yy, zz]: [f64; 3]) {
+    /// Writes the mass properties of a body, with its inertia as three numbers if its axes are principal.
+    fn inertial(&mut self, depth: usize, at: [f64; 3], mass: f64, inertia: &Matrix3<f64>) {
+        let diagonal = inertia.diagonal();
+        if *inertia != Matrix3::from_diagonal(&diagonal) {
+            return self.full_inertial(depth, at, mass, inertia);
+        }
+        let ([x, y, z], [xx, yy, zz]) = (at, diagonal.into());
         line!(self, depth, "<inertial pos=\"{x} {y} {z}\" mass=\"{mass}\" diaginertia=\"{xx} {yy} {zz}\"/>");
+    }
+
+    fn full_inertial(&mut self, depth: usize, at: [f64; 3], mass: f64, all: &Matrix3<f64>) {
+        let order = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+        let (at, inertia) = (numbers(&at), numbers(&order.map(|place| all[place])));
+        line!(self, depth, "<inertial pos=\"{at}\" mass=\"{mass}\" fullinertia=\"{inertia}\"/>");
     }
 
     /// Writes the end effector, and the payload that it holds.
@@ -176,7 +192,7 @@ impl Bodies<'_> {
             let sign = placed.machine.resolved_links()[placed.machine.end_link()].sign;
             let [along, left] = payload.offset.map(|x| sign * x);
             line!(self, depth, "<body name=\"{}\" pos=\"{at} 0 0\">", placed.tree.name(TreePart::Payload));
-            self.inertial(depth + 1, [along, left, payload.axial], payload.mass, placed.of_bar(payload.inertia));
+            self.inertial(depth + 1, [along, left, payload.axial], payload.mass, &placed.of_payload());
             line!(self, depth, "</body>");
         }
     }
@@ -188,7 +204,7 @@ impl Bodies<'_> {
         let (name, hinge) = (placed.tree.name(TreePart::Platform), placed.tree.holder(TreePart::Platform));
         line!(self, depth, "<body name=\"{name}\" pos=\"{at} 0 {height}\">");
         line!(self, depth + 1, "<joint name=\"{hinge}\"/>");
-        self.inertial(depth + 1, [0.0; 3], NO_MASS_KG, [NO_INERTIA; 3]);
+        self.inertial(depth + 1, [0.0; 3], NO_MASS_KG, &diagonal([NO_INERTIA; 3]));
         placed.carries.iter().for_each(|carried| self.machine(depth + 1, *carried));
         line!(self, depth, "</body>");
     }
@@ -204,10 +220,14 @@ impl Bodies<'_> {
             let (name, hinge) = (placed.tree.name(TreePart::Rotor(k)), self.model.rotor_hinge(i, k));
             line!(self, depth, "<body name=\"{name}\" pos=\"{at} 0 0\">");
             line!(self, depth + 1, "<joint name=\"{hinge}\"/>");
-            self.inertial(depth + 1, [0.0; 3], NO_MASS_KG, placed.of_rotor(inertia));
+            self.inertial(depth + 1, [0.0; 3], NO_MASS_KG, &diagonal(placed.of_rotor(inertia)));
             line!(self, depth, "</body>");
         }
     }
+}
+
+fn diagonal(moments: [f64; 3]) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&moments.into())
 }
 
 fn numbers(all: &[f64]) -> String {

@@ -13,15 +13,17 @@
 //! I_c ω + ℓ = L in axes of the base. Nothing acts from outside, so c moves straight on; where the base is follows from it.
 //!
 //! # Assumptions
-//! Out of its plane a link is a thin bar: its inertia counts about both axes across it, and not about the axis along it. A
-//! rotor spins about the axis of its block alone.
+//! Out of its plane a link has the inertia that its file states, or else that of a thin bar: `inertia` about both axes
+//! across it, and none along it. Counterweights are flat. A rotor spins about the axis of its block alone.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::block::Block;
 use super::model::Assembly;
 use super::motion::{BlockState, Momentum, MovingBlock};
-use crate::planar::{MAX_DRIVES, Vector};
+use super::stepping;
+use crate::machine::TransverseInertia;
+use crate::planar::{MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
 /// Mass properties of a base in space.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,8 +55,12 @@ pub(super) struct OutOfPlane {
     square: [[Vector; MAX_DRIVES]; MAX_DRIVES],
     /// Σ m h², kg m².
     heights: f64,
-    /// Inertia of the links of each drive about the axis across them, kg m².
-    bars: [f64; MAX_DRIVES],
+    /// Σ (I_a + I_c) of all links, kg m²: twice the mean of their inertia about axes in the plane.
+    mean: f64,
+    /// Σ (I_c − I_a + 2 i I_xy) of the links of each drive, kg m².
+    leaning: [Vector; MAX_DRIVES],
+    /// Inertia of all links about the axis of the block, kg m².
+    spin: f64,
     /// Inertia of all rotors, kg m².
     rotors: f64,
 }
@@ -64,21 +70,26 @@ impl OutOfPlane {
         let payload = machine.spec().payload;
         let links = machine.links().iter().enumerate().map(|(j, link)| {
             let drive = machine.resolved_links()[j].drive;
-            (link.mass, link.inertia, link.axial, drive, machine.com_chain(j))
+            (link.mass, link.inertia, link.axial, drive, machine.com_chain(j), machine.link_transverse(j))
         });
         let held_by = machine.resolved_links()[machine.end_link()].drive;
-        let held = (payload.mass, payload.inertia, payload.axial, held_by, machine.payload_chain());
+        let held =
+            (payload.mass, payload.inertia, payload.axial, held_by, machine.payload_chain(), payload.transverse());
         let rotors = machine.spec().drives.iter().filter_map(|drive| drive.rotor).map(|rotor| rotor.inertia).sum();
         let mut sum = Self {
             drives: machine.drives(),
             square: [[Vector::default(); MAX_DRIVES]; MAX_DRIVES],
             heights: 0.0,
-            bars: [0.0; MAX_DRIVES],
+            mean: 0.0,
+            leaning: [Vector::default(); MAX_DRIVES],
+            spin: 0.0,
             rotors,
         };
-        for (mass, inertia, height, drive, a) in links.chain([held]) {
+        for (mass, inertia, height, drive, a, TransverseInertia { along, across, product }) in links.chain([held]) {
             sum.heights += mass * height * height;
-            sum.bars[drive] += inertia;
+            sum.mean += along + across;
+            sum.leaning[drive] += Vector::new(across - along, 2.0 * product);
+            sum.spin += inertia;
             for k in 0..sum.drives {
                 for l in 0..sum.drives {
                     sum.square[k][l] += mass * a[k] * a[l];
@@ -86,6 +97,15 @@ impl OutOfPlane {
             }
         }
         sum
+    }
+
+    /// Returns Σ_l Σ m a_k a_l e_k e_l of each drive, and with it what the tensors of its bodies have beside their mean,
+    /// kg m².
+    pub(super) fn leaning(&self, e: &UnitVectors) -> [Vector; MAX_DRIVES] {
+        std::array::from_fn(|k| {
+            let points = (0..self.drives).map(|l| self.square[k][l] * (e[k] * e[l])).sum::<Vector>();
+            points + self.leaning[k] * (e[k] * e[k])
+        })
     }
 
     /// Returns the inertia of a block about its mount, kg m², in axes of the base.
@@ -97,32 +117,60 @@ impl OutOfPlane {
                 square += self.square[k][l] * (e[k] * e[l]);
             }
         }
-        // Of a bar along e the projector to the direction across is ½ (1 − Re e²) and its like.
-        let (mut bars, mut leaning) = (0.0, Vector::default());
-        for (e, bar) in e.iter().zip(&self.bars).take(self.drives) {
-            bars += bar;
-            leaning += *bar * (e * e);
+        // The tensor of a body that turns by e keeps its mean, and the rest turns by e².
+        let mut leaning = Vector::default();
+        for (e, body) in e.iter().zip(&self.leaning).take(self.drives) {
+            leaning += body * (e * e);
         }
-        let [xx, yy] = [0.5 * (polar + square.re), 0.5 * (polar - square.re)];
-        let xy = 0.5 * square.im;
-        let weighted = moving.weighted[0];
-        let own = Matrix3::new(
-            yy + self.heights + 0.5 * (bars - leaning.re),
-            -xy - 0.5 * leaning.im,
-            -weighted.re,
-            -xy - 0.5 * leaning.im,
-            xx + self.heights + 0.5 * (bars + leaning.re),
-            -weighted.im,
-            -weighted.re,
-            -weighted.im,
-            polar + bars + self.rotors,
-        );
-        block.mount.axes * own * block.mount.axes.transpose()
+        let mean = 0.5 * (polar + self.mean) + self.heights;
+        in_space(block, mean, square + leaning, moving.weighted[0], polar + self.spin + self.rotors)
+    }
+
+    /// Returns the rate of change of [`about_mount`](Self::about_mount), kg m²/s, with the rates of a state.
+    fn change_about_mount(&self, block: &Block, moving: &MovingBlock, qd: &PerDrive) -> Matrix3<f64> {
+        let (e, mut polar, mut leaning) = (&moving.e, 0.0, Vector::default());
+        for k in 0..self.drives {
+            leaning += 2.0 * qd[k] * self.leaning[k] * (e[k] * e[k]);
+            for l in 0..self.drives {
+                polar -= (qd[l] - qd[k]) * (block.inertia.c[k][l] * (e[k].conj() * e[l])).im;
+                leaning += (qd[k] + qd[l]) * self.square[k][l] * (e[k] * e[l]);
+            }
+        }
+        in_space(block, 0.5 * polar, Vector::i() * leaning, moving.weighted[1], polar)
     }
 }
 
+/// Returns a tensor in axes of the base: in the plane of a block its mean and what it has beside that, the negative of its
+/// products with the axis, and the number about the axis.
+fn in_space(block: &Block, mean: f64, leaning: Vector, weighted: Vector, about: f64) -> Matrix3<f64> {
+    let [re, im] = [0.5 * leaning.re, 0.5 * leaning.im];
+    let [x, y] = [-weighted.re, -weighted.im];
+    let own = Matrix3::new(mean - re, -im, x, -im, mean + re, y, x, y, about);
+    block.mount.axes * own * block.mount.axes.transpose()
+}
+
+impl MovingBlock {
+    /// Returns the inertia of the block about the origin of the base, kg m², and its rate of change, kg m²/s.
+    pub(super) fn inertia(&self, block: &Block, state: &BlockState) -> [Matrix3<f64>; 2] {
+        let (mass, [place, velocity, _]) = (block.inertia.mass(), &self.mount);
+        let (moment, change) = (self.first_moment(block), block.mount.in_space(self.first[1], 0.0));
+        [
+            block.out_of_plane.about_mount(block, self) + of_mass(mass, place) + between(place, &moment),
+            block.out_of_plane.change_about_mount(block, self, &state.qd)
+                + mass * between(place, velocity)
+                + between(velocity, &moment)
+                + between(place, &change),
+        ]
+    }
+}
+
+/// Returns what a first moment, kg m, adds to the inertia about a point as far away as `place`, kg m².
+fn between(place: &Vector3<f64>, moment: &Vector3<f64>) -> Matrix3<f64> {
+    2.0 * place.dot(moment) * Matrix3::identity() - place * moment.transpose() - moment * place.transpose()
+}
+
 /// Returns the inertia of a mass at a place about the origin, kg m².
-fn of_mass(mass: f64, at: &Vector3<f64>) -> Matrix3<f64> {
+pub(super) fn of_mass(mass: f64, at: &Vector3<f64>) -> Matrix3<f64> {
     mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
 }
 
@@ -140,9 +188,7 @@ impl Assembly {
             let (own, at, moment) = (block.inertia.mass(), moving.mount[0], moving.first_moment(block));
             mass += own;
             first += own * at + moment;
-            let between =
-                2.0 * at.dot(&moment) * Matrix3::identity() - at * moment.transpose() - moment * at.transpose();
-            inertia += block.out_of_plane.about_mount(block, moving) + of_mass(own, &at) + between;
+            inertia += block.out_of_plane.about_mount(block, moving) + of_mass(own, &at) + between(&at, &moment);
         }
         let com = first / mass;
         inertia -= of_mass(mass, &com);
@@ -174,19 +220,17 @@ impl Attitude {
     /// the step and an attitude.
     ///
     /// # Source
-    /// The commutator-free method of fourth order of E. Celledoni, A. Marthinsen and B. Owren, *Commutator-free Lie group
-    /// methods*, 2003: the quaternion stays a unit quaternion.
+    /// The commutator-free method of fourth order of Celledoni, Marthinsen and Owren, 2003: the quaternion stays a unit
+    /// quaternion.
     #[must_use]
-    pub fn after(&self, h: f64, mut rate: impl FnMut(f64, &Self) -> Vector3<f64>) -> Self {
-        let turned = |from: &Self, by: Vector3<f64>| Self(from.0 * UnitQuaternion::from_scaled_axis(by));
-        let first = h * rate(0.0, self);
-        let half = turned(self, 0.5 * first);
-        let second = h * rate(0.5, &half);
-        let third = h * rate(0.5, &turned(self, 0.5 * second));
-        let fourth = h * rate(1.0, &turned(&half, third - 0.5 * first));
-        let both = 2.0 * (second + third);
-        let mut end = turned(&turned(self, (3.0 * first + both - fourth) / 12.0), (3.0 * fourth + both - first) / 12.0);
+    pub fn after(&self, h: f64, rate: impl FnMut(f64, &Self) -> Vector3<f64>) -> Self {
+        let mut end = stepping::after(self, h, rate, |from, by| from.turned(by));
         end.0.renormalize_fast();
         end
+    }
+
+    /// Returns the attitude turned by a rotation vector in axes of the base, rad.
+    pub(super) fn turned(&self, by: &Vector3<f64>) -> Self {
+        Self(self.0 * UnitQuaternion::from_scaled_axis(*by))
     }
 }

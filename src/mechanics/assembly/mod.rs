@@ -25,17 +25,22 @@
 
 mod block;
 mod catalog;
+mod compliant_base;
 mod condition;
 mod file;
 mod free_base;
 mod model;
 mod motion;
+mod moving_base;
+mod stepping;
 mod words;
 
 pub use block::{Block, Mount};
 pub use catalog::{builtin_assemblies, builtin_text};
+pub use compliant_base::{BaseState, Compliance, ComplianceError};
 pub use condition::{BlockConditions, CarriedOffset, Reacting};
 pub use file::{AssemblySpec, BlockSpec, FindMachine, parse};
 pub use free_base::{Attitude, BaseMotion, SpatialBase};
 pub use model::{Assembly, AssemblyError, MAX_BLOCKS};
 pub use motion::{BlockLoads, BlockState, Momentum, SpatialLoads, SpatialWrench};
+pub use moving_base::MovingBase;

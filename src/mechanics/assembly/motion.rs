@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::block::Block;
 use super::model::{Assembly, MAX_BLOCKS};
+use super::moving_base::{MovingBase, mount_acceleration, moved_loads, turning_torque};
 use crate::dynamics::{ExternalLoads, angular_momentum, inverse, inverse_with_wrench};
 use crate::planar::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, Vector};
 
@@ -72,7 +73,8 @@ pub struct BlockLoads {
     pub on_base: SpatialLoads,
 }
 
-/// Linear momentum, kg m/s, and angular momentum about the origin of the base, kg m²/s, as seen from the base.
+/// Linear momentum, kg m/s, and angular momentum, kg m²/s. Of blocks as seen from the base it is about the origin of the
+/// base; of all in space it is about the common centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Momentum {
     /// Linear momentum.
@@ -144,7 +146,7 @@ impl MovingBlock {
     }
 
     /// Returns what the block's own bodies put on the base.
-    fn loads(&self, block: &Block, state: &BlockState, gravity: &Vector3<f64>) -> SpatialLoads {
+    pub(super) fn loads(&self, block: &Block, state: &BlockState, gravity: &Vector3<f64>) -> SpatialLoads {
         let (mass, moment) = (block.inertia.mass(), self.first_moment(block));
         let [place, _, pull] = self.mount;
         let alone = inverse_with_wrench(&block.inertia, &self.e, &state.qd, &state.qdd, &ExternalLoads::default());
@@ -159,7 +161,7 @@ impl MovingBlock {
     }
 
     /// Returns the momentum of the block's own bodies.
-    fn momentum(&self, block: &Block, state: &BlockState) -> Momentum {
+    pub(super) fn momentum(&self, block: &Block, state: &BlockState) -> Momentum {
         let (mass, moment) = (block.inertia.mass(), self.first_moment(block));
         let [place, velocity, _] = self.mount;
         let linear = mass * velocity + block.mount.in_space(self.first[1], 0.0);
@@ -204,16 +206,34 @@ impl Assembly {
     ///
     /// # Panics
     /// If there are fewer states than blocks.
-    pub fn loads(&self, states: &[BlockState], mut see: impl FnMut(usize, &BlockLoads)) -> SpatialLoads {
+    pub fn loads(&self, states: &[BlockState], see: impl FnMut(usize, &BlockLoads)) -> SpatialLoads {
+        self.loads_with(None, &self.gravity, states, see)
+    }
+
+    /// Returns the same on a base that may move.
+    pub(super) fn loads_with(
+        &self,
+        base: Option<&MovingBase>,
+        gravity: &Vector3<f64>,
+        states: &[BlockState],
+        mut see: impl FnMut(usize, &BlockLoads),
+    ) -> SpatialLoads {
         let moving = self.moving(states);
         let (mut carried, mut sum) = ([Vector3::zeros(); MAX_BLOCKS], SpatialLoads::default());
         for i in self.order().iter().rev() {
             let (block, state) = (&self.blocks()[*i], &states[*i]);
-            let on_base = moving[*i].loads(block, state, &self.gravity);
-            let pull = self.gravity - moving[*i].mount[2];
+            let mut on_base = moving[*i].loads(block, state, gravity);
+            let mut pull = gravity - moving[*i].mount[2];
+            if let Some(base) = base {
+                on_base.motion = moved_loads(block, &moving[*i], state, base);
+                pull -= mount_acceleration(&moving[*i], base);
+            }
             let around =
                 ExternalLoads { gravity: block.mount.in_plane(&pull), force: block.mount.in_plane(&carried[*i]) };
-            let torque = inverse(&block.inertia, &moving[*i].e, &state.qd, &state.qdd, &around);
+            let mut torque = inverse(&block.inertia, &moving[*i].e, &state.qd, &state.qdd, &around);
+            if let Some(base) = base {
+                torque = torque.plus(1.0, &turning_torque(block, &moving[*i], state, base));
+            }
             see(*i, &BlockLoads { torque: block.inertia.motors().motor_torques(&torque), on_base });
             sum.add(&on_base);
             if let Some(carrier) = block.mount.on {

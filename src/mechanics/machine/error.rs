@@ -149,6 +149,14 @@ pub enum MachineError {
         /// Description of the error, and of what would do.
         why: String,
     },
+    /// Moments of inertia that no body has.
+    #[error("{} {why}", named(place))]
+    Transverse {
+        /// Place in the machine file.
+        place: KeyPath,
+        /// The moments, and which would do.
+        why: String,
+    },
     /// A number of a link that is neither stated nor follows from parts.
     #[error(
         "{} is missing: want a number, or a [[part]] or [[lump]] of link {:?} from which it follows",
@@ -240,6 +248,7 @@ macro_rules! every_place {
             | Self::StatorCycle { $place, .. }
             | Self::OpenLoop { $place, .. }
             | Self::Part { $place, .. }
+            | Self::Transverse { $place, .. }
             | Self::HalfLimited { $place, .. }
             | Self::NoParts { $place, .. }
     };

@@ -59,7 +59,7 @@ const NOT_OF_THE_SHAPE: &str = "the part has a shape that has none";
 
 /// Every key of a machine that can be set on its own. Keys name links, drives and angles by their names,
 /// counterweights, parts and lumps by their numbers, from 1.
-pub(super) const MACHINE_KEYS: [KeyRow; 42] = [
+pub(super) const MACHINE_KEYS: [KeyRow; 46] = [
     row(
         Key::number(
             "link.*.com",
@@ -88,6 +88,25 @@ pub(super) const MACHINE_KEYS: [KeyRow; 42] = [
         Key::number("link.*.inertia", INERTIA, Key::REQUIRED, "Inertia of a link about its own centre of mass.")
             .instead(OF_PARTS),
         FieldAccess::LinkNumber(LinkNumber::Inertia),
+    ),
+    row(
+        Key::number(
+            "link.*.inertia_along",
+            INERTIA,
+            "0",
+            "Inertia of a link about its own axis; a base that turns in space feels it, a plane motion does not.",
+        ),
+        at!(Number, |spec, i| spec.links[i].inertia_along),
+    ),
+    row(
+        Key::number(
+            "link.*.inertia_across",
+            INERTIA,
+            Key::NONE,
+            "Inertia of a link about the axis in the plane across it; a base that turns in space feels it.",
+        )
+        .instead("the same as inertia"),
+        at!(Limit, |spec, i| spec.links[i].inertia_across),
     ),
     row(
         Key::number("link.*.length", LENGTH, Key::REQUIRED, "Length of a link that shares it with no other."),
@@ -274,6 +293,25 @@ pub(super) const MACHINE_KEYS: [KeyRow; 42] = [
     row(
         Key::number("payload.inertia", INERTIA, "0", "Inertia of the payload about its own centre of mass."),
         at!(Number, |spec, _| spec.payload.inertia),
+    ),
+    row(
+        Key::number(
+            "payload.inertia_along",
+            INERTIA,
+            "0",
+            "Inertia of the payload about the axis along the link that holds it; a base that turns in space feels it.",
+        ),
+        at!(Number, |spec, _| spec.payload.inertia_along),
+    ),
+    row(
+        Key::number(
+            "payload.inertia_across",
+            INERTIA,
+            Key::NONE,
+            "Inertia of the payload about the axis in the plane across that link; a base that turns in space feels it.",
+        )
+        .instead("the same as payload.inertia"),
+        at!(Limit, |spec, _| spec.payload.inertia_across),
     ),
     KeyRow {
         key: Key::new(

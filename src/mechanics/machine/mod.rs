@@ -30,6 +30,7 @@ mod parts;
 pub mod ranges;
 mod set;
 mod spec;
+mod transverse;
 mod words;
 
 pub use caps::{MAX_CHAIN_LINKS, MAX_COUNTERWEIGHTS, MAX_LINKS, MAX_PARTS, MAX_PER_PART};
@@ -54,4 +55,5 @@ pub(crate) use parts::{sum_of, weigh};
 pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{MACHINE_TABLES, is_of_machine};
 pub use spec::{Angle, Attach, Closure, Drive, Length, Link, LinkPoint, MachineSpec, Payload, PlaceOnLink, Rotor};
+pub use transverse::TransverseInertia;
 pub use words::{MachineWords, SMALLEST, pattern_of};

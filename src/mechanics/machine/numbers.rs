@@ -5,6 +5,7 @@ use super::error::{KeyPath, MachineError};
 use super::keys::rows_of;
 use super::ranges::{ANGLE, LENGTH, MIN_POSITIVE, within};
 use super::spec::MachineSpec;
+use super::transverse;
 use stillbase_settings::range::Requirement;
 
 /// Checks every number of a specification. It fails if one is out of range or not finite, or an angle has one limit.
@@ -49,6 +50,7 @@ pub(super) fn check_numbers(spec: &MachineSpec) -> Result<(), MachineError> {
             });
         }
     }
+    transverse::check(spec)?;
     check("counterweight", spec.counterweights.len())?;
     check_shapes(spec)?;
     for (i, angle) in spec.angles.iter().enumerate() {

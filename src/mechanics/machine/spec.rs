@@ -80,6 +80,12 @@ pub struct Payload {
     /// Inertia about its own centre of mass, kg m².
     #[serde(default)]
     pub inertia: f64,
+    /// Inertia about the axis along the link that holds it, kg m²; no plane motion depends on it.
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub inertia_along: f64,
+    /// Inertia about the axis in the plane across that link, kg m²; `None` if it equals `inertia`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inertia_across: Option<f64>,
     /// Its centre of mass relative to the end effector: along the link that holds it, and to the left of that link's
     /// axis, m.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -105,7 +111,18 @@ impl Payload {
         let offset = [0, 1].map(|i| mean(self.offset[i], other.offset[i]));
         let away = |p: &Self| p.mass * ((p.offset[0] - offset[0]).powi(2) + (p.offset[1] - offset[1]).powi(2));
         let inertia = self.inertia + other.inertia + away(&self) + away(&other);
-        Self { mass, inertia, offset, axial: mean(self.axial, other.axial) }
+        let axial = mean(self.axial, other.axial);
+        let both = Self { mass, inertia, offset, axial, ..Self::default() };
+        if !self.states_transverse() && !other.states_transverse() {
+            return both;
+        }
+        let squared = |p: &Self, i: usize| p.mass * (p.offset[i] - offset[i]).powi(2);
+        let [own, others] = [self.transverse(), other.transverse()];
+        Self {
+            inertia_along: own.along + others.along + squared(&self, 1) + squared(&other, 1),
+            inertia_across: Some(own.across + others.across + squared(&self, 0) + squared(&other, 0)),
+            ..both
+        }
     }
 }
 
@@ -176,6 +193,10 @@ pub struct Link {
     pub mass: f64,
     /// Inertia about its own centre of mass, kg m².
     pub inertia: f64,
+    /// Inertia about its own axis, kg m²; no plane motion depends on it.
+    pub inertia_along: f64,
+    /// Inertia about the axis in the plane across it, kg m²; `None` if it equals `inertia`.
+    pub inertia_across: Option<f64>,
     /// Position l_c of its centre of mass along the link, from the root towards the tip, m.
     pub com: f64,
     /// Distance of its centre of mass from the link's axis, to the left of the direction root to tip, m.

@@ -16,6 +16,12 @@ pub struct Body {
     /// Inertia about its own centre of mass, kg m².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<f64>,
+    /// Inertia about its own axis, kg m².
+    #[serde(default, skip_serializing_if = "is_nought")]
+    pub inertia_along: f64,
+    /// Inertia about the axis in the plane across it, kg m²; `None` if it equals that about its centre of mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inertia_across: Option<f64>,
     /// Position of its centre of mass from the root towards the tip, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub com: Option<f64>,
@@ -39,14 +45,15 @@ impl Body {
     pub(super) fn of(link: &Link) -> Self {
         let typed = |number| Some(link.number(number)).filter(|_| !link.follows(number));
         let [mass, inertia, com, com_normal] = LinkNumber::ALL.map(typed);
-        Self { mass, inertia, com, com_normal, axial: link.axial }
+        let Link { inertia_along, inertia_across, axial, .. } = *link;
+        Self { mass, inertia, inertia_along, inertia_across, com, com_normal, axial }
     }
 
-    /// Returns all numbers of a body as typed.
+    /// Returns all numbers of a body as typed; out of its plane it is a thin bar.
     pub(super) fn typed(body: &PlaneBody, axial: f64) -> Self {
         let [mass, at, across, inertia] = [body.mass, body.at, body.across, body.inertia].map(|x| shortest(x, SUMMED));
         let com_normal = Some(across).filter(|across| *across != 0.0);
-        Self { mass: Some(mass), inertia: Some(inertia), com: Some(at), com_normal, axial }
+        Self { mass: Some(mass), inertia: Some(inertia), com: Some(at), com_normal, axial, ..Self::default() }
     }
 
     /// Returns a number, in SI units, if it is typed.
@@ -64,14 +71,21 @@ impl Body {
         LinkNumber::ALL.into_iter().filter(|number| self.number(*number).is_some())
     }
 
-    /// Returns it without its typed numbers, which follow from parts again; `None` if nothing is left. Its height stays.
+    /// Returns it without its typed numbers, which follow from parts again; `None` if nothing is left. Its height stays, and its
+    /// inertia about axes in the plane.
     pub fn freed(&self) -> Option<Self> {
-        Some(Self { axial: self.axial, ..Self::default() }).filter(|rest| *rest != Self::default())
+        Some(self.untyped()).filter(|rest| *rest != Self::default())
     }
 
-    /// Returns whether no number is typed but the height.
+    /// Returns whether no number is typed that parts can give.
     pub fn follows(&self) -> bool {
-        *self == Self { axial: self.axial, ..Self::default() }
+        *self == self.untyped()
+    }
+
+    /// Returns what no part can give.
+    fn untyped(&self) -> Self {
+        let Self { inertia_along, inertia_across, axial, .. } = *self;
+        Self { inertia_along, inertia_across, axial, ..Self::default() }
     }
 }
 
@@ -113,7 +127,7 @@ impl Sketch {
         let PlaneBody { mass, at, inertia, .. } = self.slender(bar);
         let [mass, inertia, com] =
             [(own.mass, mass), (own.inertia, inertia), (own.com, at)].map(|(typed, rest)| typed.or(Some(rest)));
-        Body { mass, inertia, com, com_normal: own.com_normal.filter(|across| *across != 0.0), axial: own.axial }
+        Body { mass, inertia, com, com_normal: own.com_normal.filter(|across| *across != 0.0), ..own }
     }
 
     /// Returns the body of a slender bar between its outermost pins, to four digits.

@@ -34,6 +34,8 @@ impl Sketch {
                 length: lengths.length(&own, i),
                 mass: 0.0,
                 inertia: 0.0,
+                inertia_along: stated.inertia_along,
+                inertia_across: stated.inertia_across,
                 com: 0.0,
                 com_normal: 0.0,
                 axial: stated.axial,

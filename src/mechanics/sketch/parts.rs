@@ -151,6 +151,8 @@ impl Sketch {
             length: Length::Metres(rounded(self.length(bar))),
             mass: 1.0,
             inertia: 1.0,
+            inertia_along: 0.0,
+            inertia_across: None,
             com: 0.0,
             com_normal: 0.0,
             axial: 0.0,

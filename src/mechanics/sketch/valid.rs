@@ -170,7 +170,9 @@ impl Sketch {
     fn check_numbers(&self) -> Result<(), SketchRefusal> {
         let own = |bar: &Bar| {
             let body = bar.body.unwrap_or_default();
-            LinkNumber::ALL.into_iter().filter_map(move |number| body.number(number)).chain([body.axial, bar.per_metre])
+            let moments = [Some(body.inertia_along), body.inertia_across].into_iter().flatten();
+            let typed = LinkNumber::ALL.into_iter().filter_map(move |number| body.number(number));
+            typed.chain(moments).chain([body.axial, bar.per_metre])
         };
         let motors = self.motors.iter().flat_map(|motor| {
             let drive = &motor.drive;
@@ -183,8 +185,9 @@ impl Sketch {
             .iter()
             .flat_map(|w| [w.mass, w.at, w.across, w.radius, w.inner_radius, w.length, w.width]);
         let angles = self.angles.iter().flat_map(|angle| [angle.offset].into_iter().chain(angle.min).chain(angle.max));
-        let payload = [self.payload.mass, self.payload.inertia, self.payload.axial];
-        let rest = payload.into_iter().chain(self.payload.offset).chain(self.gravity);
+        let payload = [self.payload.mass, self.payload.inertia, self.payload.inertia_along, self.payload.axial];
+        let rest =
+            payload.into_iter().chain(self.payload.inertia_across).chain(self.payload.offset).chain(self.gravity);
         let mut all = self.bars.iter().flat_map(own).chain(motors).chain(weights).chain(angles).chain(rest);
         match all.find(|x| !x.is_finite()) {
             Some(x) => whole(format!("a number of the drawing is {}", shortened(&x.to_string(), 20)), "finite numbers"),

@@ -47,7 +47,7 @@ impl Load {
 
     /// Returns this load as the payload of a machine.
     pub fn payload(&self) -> Payload {
-        Payload { mass: self.mass, inertia: self.inertia, offset: self.offset, axial: self.axial }
+        Payload { mass: self.mass, inertia: self.inertia, offset: self.offset, axial: self.axial, ..Payload::default() }
     }
 
     /// Returns a machine with this payload added to its own.

@@ -244,14 +244,24 @@ impl UncertainParameter {
             VariedQuantity::Com(j) => spec.links[j].com = value,
             VariedQuantity::ComNormal(j) => spec.links[j].com_normal = value,
             VariedQuantity::Mass(j) => spec.links[j].mass = value,
-            VariedQuantity::Inertia(j) => spec.links[j].inertia = value,
+            VariedQuantity::Inertia(j) => {
+                // The other moments follow in proportion, so that they remain those of a body.
+                let link = &mut spec.links[j];
+                let was = link.inertia;
+                link.scale_inertia(if was > 0.0 { value / was } else { 1.0 });
+                link.inertia = value;
+            }
             VariedQuantity::Length(i) => {
                 if let Some(metres) = spec.lengths.values_mut().nth(i) {
                     *metres = value;
                 }
             }
             VariedQuantity::PayloadMass => spec.payload.mass = value,
-            VariedQuantity::PayloadInertia => spec.payload.inertia = value,
+            VariedQuantity::PayloadInertia => {
+                let was = spec.payload.inertia;
+                spec.payload.scale_inertia(if was > 0.0 { value / was } else { 1.0 });
+                spec.payload.inertia = value;
+            }
         }
     }
 

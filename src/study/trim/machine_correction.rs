@@ -183,7 +183,7 @@ fn set_momenta(spec: &mut MachineSpec, machine: &Machine, momenta: &[Option<f64>
         let more = wanted.map_or(0.0, |wanted| wanted - inertia.momentum(k));
         if sum > 0.0 && sum + more > 0.0 {
             let factor = 1.0 + more / sum;
-            own().collect::<Vec<_>>().into_iter().for_each(|j| spec.links[j].inertia *= factor);
+            own().collect::<Vec<_>>().into_iter().for_each(|j| spec.links[j].scale_inertia(factor));
         }
     }
 }

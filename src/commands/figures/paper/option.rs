@@ -25,10 +25,14 @@ pub enum PaperOption<'a> {
 }
 
 /// Settings of a machine that concern neither its parameters of motion nor its poses.
-const NOT_OF_POSES: [&str; 8] = [
+const NOT_OF_POSES: [&str; 12] = [
     "gravity",
     "link.*.axial",
     "payload.axial",
+    "link.*.inertia_along",
+    "link.*.inertia_across",
+    "payload.inertia_along",
+    "payload.inertia_across",
     "counterweight.*.fixed",
     "drive.*.torque_limit",
     "drive.*.speed_limit",

@@ -61,11 +61,13 @@ pub struct DerivedNumbers([Option<f64>; 4]);
 /// Two links are equal if a file states them alike: the values that numbers had before they were typed do not count.
 impl PartialEq for Link {
     fn eq(&self, other: &Self) -> bool {
+        let moments = |link: &Self| (link.inertia_along, link.inertia_across);
         let stated = |link: &Self| (link.direction, link.axial, LinkNumber::ALL.map(|number| link.follows(number)));
         let numbers = |link: &Self| LinkNumber::ALL.map(|number| link.number(number));
         (&self.name, &self.drive, &self.attach, &self.length)
             == (&other.name, &other.drive, &other.attach, &other.length)
             && stated(self) == stated(other)
+            && moments(self) == moments(other)
             && numbers(self) == numbers(other)
     }
 }
@@ -151,6 +153,10 @@ pub struct LinkInFile {
     mass: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     inertia: Option<f64>,
+    #[serde(default, skip_serializing_if = "is_nought")]
+    inertia_along: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    inertia_across: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     com: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -161,7 +167,7 @@ pub struct LinkInFile {
 
 impl From<LinkInFile> for Link {
     fn from(file: LinkInFile) -> Self {
-        let LinkInFile { name, drive, attach, direction, length, mass, inertia, com, com_normal, axial } = file;
+        let LinkInFile { name, drive, attach, direction, length, mass, inertia, com, com_normal, axial, .. } = file;
         let none = f64::NAN;
         let mut link = Self {
             name,
@@ -171,6 +177,8 @@ impl From<LinkInFile> for Link {
             length,
             mass: none,
             inertia: none,
+            inertia_along: file.inertia_along,
+            inertia_across: file.inertia_across,
             com: none,
             com_normal: 0.0,
             axial,
@@ -187,7 +195,20 @@ impl From<Link> for LinkInFile {
     fn from(link: Link) -> Self {
         let [mass, inertia, com, com_normal] =
             LinkNumber::ALL.map(|number| (!link.follows(number)).then(|| link.number(number)));
-        let Link { name, drive, attach, direction, length, axial, .. } = link;
-        Self { name, drive, attach, direction, length, mass, inertia, com, com_normal, axial }
+        let Link { name, drive, attach, direction, length, inertia_along, inertia_across, axial, .. } = link;
+        Self {
+            name,
+            drive,
+            attach,
+            direction,
+            length,
+            mass,
+            inertia,
+            inertia_along,
+            inertia_across,
+            com,
+            com_normal,
+            axial,
+        }
     }
 }
