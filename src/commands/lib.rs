@@ -82,6 +82,7 @@ pub use stop::StopFlag;
 
 use failure::Failure;
 use stillbase_study::assembly_check::AssemblyReport;
+use stillbase_study::assembly_weights::AssemblyWeightReport;
 use stillbase_study::centres::{DesignReport, RebalanceReport};
 use stillbase_study::counterweights::CounterweightReport;
 use stillbase_study::equations::StatedEquations;
@@ -139,7 +140,9 @@ subcommands! {
     Keys: keys::KeysArguments => [keys::Answer],
     Check: check::CheckArguments => [check::Answer, AssemblyReport],
     Learn: learn::LearnArguments => [StatedEquations],
-    Design: design::DesignArguments => [DesignReport, RebalanceReport, CounterweightReport, design::FrontsAnswer, design::VariedAnswer],
+    Design: design::DesignArguments => [
+        DesignReport, RebalanceReport, CounterweightReport, AssemblyWeightReport, design::FrontsAnswer, design::VariedAnswer
+    ],
     Layers: layers::LayersArguments => [LayersReport],
     Dynamics: dynamics::DynamicsArguments => [dynamics::Answer],
     Reach: reach::ReachArguments => [reach::Answer],

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use stillbase_files::is_standard;
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::assembly::{Assembly, parse};
+use stillbase_mechanics::machine::{Machine, named as known};
 use stillbase_session::scenario::{DesignBrief, MachineFile};
 
 use super::failure::Failure;
@@ -43,6 +44,22 @@ impl NewMachine {
         let Some(file) = &self.output else { return Ok(()) };
         write_file(file, named_after(file, machine, design, summary)?.as_bytes(), self.force)
     }
+
+    /// Writes an assembly, if a file is asked for.
+    pub fn save_assembly(&self, assembly: &Assembly, summary: String) -> Result<(), Failure> {
+        let Some(file) = &self.output else { return Ok(()) };
+        let mut named = assembly.clone();
+        (named.name, named.summary) = (stem(file, "assembly"), summary);
+        // A name that no file of an assembly may have is told now.
+        parse(&named.to_toml(), &named.name, &known)?;
+        write_file(file, named.to_toml().as_bytes(), self.force)
+    }
+}
+
+/// Returns the name of a file without its ending, or a usual one for standard output.
+fn stem(file: &Path, usual: &str) -> String {
+    let name = file.file_stem().filter(|_| !is_standard(file)).unwrap_or(OsStr::new(usual));
+    name.to_string_lossy().into_owned()
 }
 
 /// Returns a machine with its brief as TOML, named after its file because it differs from the original machine.
@@ -51,8 +68,7 @@ impl NewMachine {
 /// If the name of the file cannot be the name of a machine.
 pub fn named_after(file: &Path, machine: &Machine, design: &DesignBrief, summary: String) -> Result<String, Failure> {
     let mut spec = machine.spec().clone();
-    let name = file.file_stem().filter(|_| !is_standard(file)).unwrap_or(OsStr::new("machine"));
-    spec.name = name.to_string_lossy().into_owned();
+    spec.name = stem(file, "machine");
     spec.summary = summary;
     Ok(MachineFile { machine: Machine::new(spec)?, design: design.clone() }.to_toml())
 }

@@ -170,10 +170,31 @@ fn reason(assembly: &Assembly, i: usize, of: &BlockConditions, why: Reacting) ->
                 significant(of.ground)
             )
         }
-        Reacting::Tilt => format!(
-            "its bodies are at different heights, which tilts the base: Σ m h a up to {} kg m²; want links and what it \
-             carries at one height, or mirrored about its plane",
-            significant(of.tilt)
-        ),
+        Reacting::Tilt => {
+            let mend = match (&carried[..], height_of_links(&assembly.blocks()[i])) {
+                ([only], Some(height)) => {
+                    let own = &assembly.blocks()[i];
+                    let off = own.platform_height() + of.carried.above - height;
+                    let at = only.mount.at - own.mount.axes.column(2) * off;
+                    let [x, y, z] = at.map(nine_digits).into();
+                    format!(", as with block {} at = [{x}, {y}, {z}]", only.name)
+                }
+                _ => String::new(),
+            };
+            format!(
+                "its bodies are at different heights, which tilts the base: Σ m h a up to {} kg m²; want links and what \
+                 it carries at one height{mend}, or mirrored about its plane",
+                significant(of.tilt)
+            )
+        }
     }
+}
+
+/// Returns the height of all links of a block and of its payload, m; `None` if they are at several.
+fn height_of_links(block: &Block) -> Option<f64> {
+    let (spec, links) = (block.machine.spec(), block.machine.links());
+    let held = Some(spec.payload.axial).filter(|_| spec.payload.mass > 0.0);
+    let mut heights = links.iter().filter(|link| link.mass > 0.0).map(|link| link.axial).chain(held);
+    let first = heights.next()?;
+    heights.all(|height| height == first).then_some(first)
 }

@@ -14,7 +14,7 @@ use stillbase_mechanics::counterweights::{
     CounterweightError, CounterweightSpec, FreeRotor, PayloadResidual, PlacedCounterweights, front_while,
     over_payloads, place_weights,
 };
-use stillbase_mechanics::machine::{Counterweight, Inertia, Machine, MachineError};
+use stillbase_mechanics::machine::{Counterweight, Drive, Inertia, Machine, MachineError, Rotor};
 use stillbase_planning::Motion;
 
 /// Number of payloads, across their range, at which the residual is reported.
@@ -185,6 +185,14 @@ pub struct ChosenRotor {
     pub ratio: f64,
 }
 
+impl ChosenRotor {
+    /// Returns the rotor of a drive.
+    pub fn of(drive: &Drive) -> Self {
+        let Rotor { inertia, ratio } = drive.rotor.unwrap_or_default();
+        Self { drive: drive.name.clone(), inertia, ratio }
+    }
+}
+
 /// Returns the counterweights of a machine that are removed before others are placed: all but the fixed ones.
 pub fn removed_weights(machine: &Machine) -> Vec<Counterweight> {
     machine.spec().counterweights.iter().filter(|weight| !weight.fixed).cloned().collect()
@@ -284,11 +292,7 @@ impl CounterweightReport {
         // The bare machine includes the present payload, so that it does not count as added mass.
         let bare = placed.machine.without_counterweights()?;
         let (machine, inertia) = (&placed.machine, Inertia::of(&placed.machine));
-        let chosen = |rotor: &FreeRotor| {
-            let drive = &machine.spec().drives[rotor.drive];
-            let found = drive.rotor.unwrap_or_default();
-            ChosenRotor { drive: drive.name.clone(), inertia: found.inertia, ratio: found.ratio }
-        };
+        let chosen = |rotor: &FreeRotor| ChosenRotor::of(&machine.spec().drives[rotor.drive]);
         let payload = request.payload.map(|ends| over_payloads(machine, ends, PAYLOAD_SAMPLES)).transpose()?;
         Ok(Self {
             measures: Measures::of(&bare, machine, motion),

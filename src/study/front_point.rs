@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use stillbase_mechanics::counterweights::{PlacedCounterweights, PlacementTolerance, worst_residual};
+use stillbase_mechanics::assembly::Assembly;
+use stillbase_mechanics::counterweights::{
+    PlacedCounterweights, PlacementTolerance, worst_residual, worst_residual_in_assembly,
+};
 use stillbase_mechanics::dynamics::{ExternalLoads, inverse_with_wrench};
 use stillbase_mechanics::machine::{Inertia, Machine};
 use stillbase_mechanics::planar::Vector;
@@ -89,6 +92,21 @@ impl FrontPoint {
             torque: motion.map(|motion| greatest_torque(machine, motion)),
             workspace: workspace.then(|| plane_area(machine)).flatten(),
             residual_if_misplaced: worst_residual(machine, &PlacementTolerance::DEFAULT).force,
+            relative_gap: Some(placed.relative_gap()).filter(|gap| gap.is_finite()),
+            certified: placed.is_certified(),
+        }
+    }
+}
+
+impl From<&PlacedCounterweights<Assembly>> for FrontPoint {
+    /// The measures of an assembly: of all its blocks together, without torque and workspace.
+    fn from(placed: &PlacedCounterweights<Assembly>) -> Self {
+        Self {
+            added_mass: placed.added_mass,
+            inertia: placed.machine.total_momentum(),
+            torque: None,
+            workspace: None,
+            residual_if_misplaced: worst_residual_in_assembly(&placed.machine, &PlacementTolerance::DEFAULT).force,
             relative_gap: Some(placed.relative_gap()).filter(|gap| gap.is_finite()),
             certified: placed.is_certified(),
         }

@@ -7,6 +7,7 @@
 
 pub mod advice;
 pub mod assembly_check;
+pub mod assembly_weights;
 pub mod balance_constants;
 pub mod base_spectrum;
 pub mod centres;

@@ -49,13 +49,19 @@ impl Measures {
     /// Compares a machine with the bare one. The motion must have as many drives as both.
     pub fn of(bare: &Machine, machine: &Machine, motion: Option<&Motion>) -> Self {
         let (before, after) = (Inertia::of(bare), Inertia::of(machine));
-        let [was, is] = [&before, &after].map(|inertia| inertia.total_momentum());
-        let (light, heavy) = (before.mass(), after.mass());
+        Self {
+            beta: motion.map(|motion| beta(bare.gravity(), [&before, &after], motion)),
+            ..Self::between([&before, &after].map(|inertia| [inertia.mass(), inertia.total_momentum()]))
+        }
+    }
+
+    /// Compares mass, kg, and Σ D_k, kg m², before and after.
+    pub fn between([[light, was], [heavy, is]]: [[f64; 2]; 2]) -> Self {
         Self {
             added_mass: heavy - light,
             added_inertia: is - was,
             mass_inertia_factor: (was > 0.0).then(|| heavy / light + is / was),
-            beta: motion.map(|motion| beta(bare.gravity(), [&before, &after], motion)),
+            beta: None,
         }
     }
 }

@@ -327,14 +327,9 @@ fn silent_runs_are_silent_in_mujoco() {
     for AssemblyFrame { states, attitude, origin, rate, .. } in &frames {
         let [w, x, y, z] = attitude.components();
         // A base that does not turn moves with its arms.
-<<<<<<< HEAD
         let seen = run.assembly.momentum(states).linear / (base.mass + run.assembly.mass());
-        asked.motion(states, Some(&([origin.x, origin.y, origin.z, w, x, y, z], -(attitude.0 * seen), *rate)));
-=======
-        let seen = run.scenario().assembly.momentum(states).linear / (base.mass + run.scenario().assembly.mass());
         let joints = [origin.x, origin.y, origin.z, w, x, y, z];
         asked.motion(states, Some(&(joints, [-(attitude.0 * seen), *rate], [Vector3::zeros(); 2])));
->>>>>>> c3577cb3
     }
     for found in asked.found(&frames[0].states) {
         near("arm-against-arm: p", &[0.0; 3], &found["linear"], 1.0);

@@ -1,5 +1,6 @@
 //! `stillbase design`
 
+mod assembly;
 mod brief;
 mod fronts;
 mod kept;
@@ -45,6 +46,9 @@ use weighed::WeightArguments;
 /// With --counterweights --front and several machines, the answer compares their Pareto fronts under the same bounds.
 /// For a machine that no counterweights within the bounds balance, it gives the reason.
 ///
+/// Of an assembly --counterweights balances all blocks together: what is minimised is that of the whole, and what a block
+/// carries counts at its end effector. Links and drives are named with their block, as wrist.2.
+///
 /// With --counterweights --vary it finds them for many machines, writes a row for each to --table, and tells those that no
 /// other is better than in both mass and inertia. Parts of a study (--shard) are tables that stand one below the other.
 #[derive(Args)]
@@ -64,6 +68,7 @@ Examples:
   stillbase design nine-link-bare --counterweights --vary length.l5=0.3:0.6:7 --vary material=steel,tungsten --table designs.csv
   stillbase design nine-link-bare --counterweights --length l5=0.3,0.6 --length l9=0.2,0.5 --min-reach 1.26
   stillbase design nine-link-bare --counterweights --bars 0.03,0.006 --thickness 0.02 -o cut.toml
+  stillbase design carrier-and-wrist --counterweights --range carrier.1=-0.5,0.5 -o balanced.toml
   stillbase design counter-rotating --counterweights --rotor-ratio 1=-40,0 --objective momentum")]
 pub struct DesignArguments {
     #[command(flatten)]
@@ -106,6 +111,9 @@ impl DesignArguments {
     pub fn run(&self) -> Result<(), Failure> {
         if !self.other_machines.is_empty() {
             return self.fronts();
+        }
+        if let Some(assembly) = self.machine.assembly_file()? {
+            return self.assembly(&assembly);
         }
         let MachineFile { machine, design } = self.machine.load_file()?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;

@@ -28,7 +28,7 @@ use super::super::exit::print_message;
 use super::super::failure::Failure;
 use super::super::output::TextTable;
 use super::super::progress::goes_on;
-use super::super::sites::{link, range, sites};
+use super::super::sites::{Names, range};
 use super::measures;
 
 /// Constraints on the counterweights, and the objective to minimise.
@@ -243,24 +243,36 @@ impl WeightArguments {
         !self.rotor_ratio.is_empty() || (of_momentum && self.rotor_inertia.is_empty())
     }
 
-    /// Returns the problem that the arguments and the brief define.
+    /// Returns the problem that the arguments and the brief define for a machine.
     pub fn spec(
         &self,
         machine: &Machine,
         brief: &DesignBrief,
         motion: Option<&Motion>,
     ) -> Result<CounterweightSpec, Failure> {
-        let asked = brief.lightest_problem(machine);
+        let accelerations = motion.map(|motion| greatest_accelerations(motion).to_vec());
+        self.spec_of(&Names::from(machine), brief.lightest_problem(machine), brief, accelerations)
+    }
+
+    /// Returns the problem that the arguments define for named links and drives. `asked` is that of the brief;
+    /// `accelerations` are the greatest of each drive in a motion, rad/s².
+    pub fn spec_of(
+        &self,
+        names: &Names,
+        asked: CounterweightSpec,
+        brief: &DesignBrief,
+        accelerations: Option<Vec<f64>>,
+    ) -> Result<CounterweightSpec, Failure> {
         let mut sites = match self.range.is_empty() {
             true => asked.sites,
-            false => sites(machine, &self.range, brief.across)?,
+            false => names.sites(&self.range, brief.across)?,
         };
-        let mut heaviest = vec![f64::INFINITY; machine.links().len()];
+        let mut heaviest = vec![f64::INFINITY; names.links()];
         for word in &self.max_mass {
             let (name, most) = word.split_once('=').map_or((None, word.as_str()), |(name, most)| (Some(name), most));
             let want = || Failure::wrong_input(format!("--max-mass {word}: want a mass above 0 in kg, or LINK=M"));
             let most: f64 = most.trim().parse().ok().filter(|most| *most > 0.0).ok_or_else(want)?;
-            let only = name.map(|name| link(machine, name.trim())).transpose()?;
+            let only = name.map(|name| names.link(name.trim())).transpose()?;
             let of = heaviest.iter_mut().enumerate().filter(|(link, _)| only.is_none_or(|only| only == *link));
             of.for_each(|(_, heaviest)| *heaviest = heaviest.min(most));
         }
@@ -284,8 +296,8 @@ impl WeightArguments {
             sites.iter_mut().for_each(|site| site.most = site.most.min(most));
         }
         let mut objective = self.objective.clone().unwrap_or_else(Objective::mass);
-        match motion {
-            Some(motion) => objective.accelerations = greatest_accelerations(motion).to_vec(),
+        match accelerations {
+            Some(accelerations) => objective.accelerations = accelerations,
             None if objective.torque > 0.0 => {
                 let why =
                     "--objective torque: the torque depends on the motion: want --task SCENARIO, as --task case-3";
@@ -297,7 +309,7 @@ impl WeightArguments {
             max_added_mass: self.max_added,
             max_inertia: self.max_inertia,
             clearance: brief.clearance,
-            rotors: self.rotors(machine, brief)?,
+            rotors: self.rotors(names, brief)?,
             payload: brief.payload,
             ..CounterweightSpec::least(objective, sites, stock)
         })
@@ -329,14 +341,7 @@ impl WeightArguments {
         Ok((machine, Some(CutRequest { stock, bought: self.bought })))
     }
 
-    fn rotors(&self, machine: &Machine, brief: &DesignBrief) -> Result<Vec<FreeRotor>, Failure> {
-        let drives = &machine.spec().drives;
-        let find = |name: &str| {
-            drives.iter().position(|drive| drive.name == name).ok_or_else(|| {
-                let known: Vec<_> = drives.iter().map(|drive| drive.name.as_str()).collect();
-                Failure::wrong_input(format!("no drive {name}: want one of {}", known.join(", ")))
-            })
-        };
+    fn rotors(&self, names: &Names, brief: &DesignBrief) -> Result<Vec<FreeRotor>, Failure> {
         let inertia = self.rotor_inertia.iter().map(|(name, ends)| (name, RotorFreedom::Inertia(*ends)));
         let ratios = if self.rotor_ratio.is_empty() && self.takes_ratios() {
             brief.ratio.iter().map(|(name, ends)| (name, *ends)).collect()
@@ -344,7 +349,20 @@ impl WeightArguments {
             self.rotor_ratio.iter().map(|(name, ends)| (name, *ends)).collect::<Vec<_>>()
         };
         let ratio = ratios.into_iter().map(|(name, ends)| (name, RotorFreedom::Ratio(ends)));
-        inertia.chain(ratio).map(|(name, parameter)| Ok(FreeRotor { drive: find(name)?, parameter })).collect()
+        inertia.chain(ratio).map(|(name, parameter)| Ok(FreeRotor { drive: names.drive(name)?, parameter })).collect()
+    }
+
+    /// Returns the options given that are for one machine by itself, each with what an assembly takes instead.
+    pub fn of_one_machine(&self) -> Option<[&'static str; 2]> {
+        const LENGTHS: &str = "lengths as they are, or design --counterweights --length of one machine";
+        const BARS: &str = "links as they are, or design --counterweights --bars of one machine";
+        [
+            (self.payload.is_some(), ["--payload", "payload.mass of a block, as --set BLOCK.payload.mass=0.2"]),
+            (!self.length.is_empty(), ["--length", LENGTHS]),
+            (self.bars.is_some(), ["--bars", BARS]),
+        ]
+        .into_iter()
+        .find_map(|(given, words)| given.then_some(words))
     }
 
     /// Converts the reason why there are no counterweights into a failure, in the words `said`. If radii are bounded,
@@ -411,16 +429,21 @@ impl WeightArguments {
         let request = CounterweightRequest { spec, lengths, front: self.front.map(usize::from), bars };
         let begun = Instant::now();
         let mut seek_on = |_| begun.elapsed().as_secs_f64() < within;
-        balance_by_weights(&machine, &request, motion, &mut seek_on, &goes_on).map_err(|why| match why {
+        balance_by_weights(&machine, &request, motion, &mut seek_on, &goes_on).map_err(|why| self.failure(why, &stock))
+    }
+
+    /// Converts the reason why there are no counterweights into a failure.
+    pub fn failure(&self, why: NoCounterweights, stock: &CounterweightStock) -> Failure {
+        match why {
             NoCounterweights::Lengths(why) => lengths_failure(why),
-            NoCounterweights::Weights(why) => self.refusal(&why, &why, &stock),
+            NoCounterweights::Weights(why) => self.refusal(&why, &why, stock),
             NoCounterweights::Front(why) => request_failure(why),
-            NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(&why, &why, &stock),
-            NoCounterweights::Cut(ref cut @ NoCut::Bounds { ref why, .. }) => self.refusal(cut, why, &stock),
+            NoCounterweights::Cut(NoCut::Weights(why)) => self.refusal(&why, &why, stock),
+            NoCounterweights::Cut(ref cut @ NoCut::Bounds { ref why, .. }) => self.refusal(cut, why, stock),
             NoCounterweights::Cut(why) => cut_failure(why),
             NoCounterweights::Machine(why) => why.into(),
             NoCounterweights::Stopped => Failure::Stopped,
-        })
+        }
     }
 }
 
@@ -465,6 +488,7 @@ fn is_wrong_input(why: &CounterweightError) -> bool {
             | CounterweightError::RotorTwice(_)
             | CounterweightError::FreeRotorOfFront(_)
             | CounterweightError::NoRotor(_)
+            | CounterweightError::PayloadOfAssembly
     )
 }
 
@@ -555,27 +579,45 @@ pub fn gap_cell(gap: Option<f64>, certified: bool) -> String {
     gap.map_or_else(|| "–".into(), |gap| format!("{gap:.1e}{mark}"))
 }
 
-/// Formats the report as text.
-pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
-    let off_axis = report.weights.iter().any(|weight| weight.across != 0.0);
+/// Formats counterweights, one a row.
+pub fn weights_table(weights: &[Counterweight]) -> TextTable {
+    let off_axis = weights.iter().any(|weight| weight.across != 0.0);
     let some =
         |cells: [String; 5]| cells.into_iter().enumerate().filter(move |(i, _)| off_axis || *i != 3).map(|(_, c)| c);
-    let first = report.weights.first().map(Counterweight::shape).unwrap_or_default();
+    let first = weights.first().map(Counterweight::shape).unwrap_or_default();
     let size = if matches!(first, CounterweightShape::Box { .. }) { "length m" } else { "radius m" };
-    let shape = match first {
+    let heads = ["counterweight on link", "kg", "at m", "left of axis m", size].map(String::from);
+    let mut table = TextTable::new(some(heads));
+    for w in weights {
+        let (_, size) = w.free_size();
+        let [mass, at, across, size] = [w.mass, w.at, w.across, size].map(|x| fixed_or_finer(x, 6));
+        table.row(some([w.link.clone(), mass, at, across, size]));
+    }
+    table
+}
+
+/// Returns the shape that counterweights have in common, for a title; empty for discs.
+pub fn shape_words(weights: &[Counterweight]) -> String {
+    let first = weights.first().map(Counterweight::shape).unwrap_or_default();
+    match first {
         CounterweightShape::Ring { inner_radius, .. } | CounterweightShape::HalfRing { inner_radius, .. } => {
             format!(" · {}, inner radius {} m", first.name(), nine_digits(inner_radius))
         }
         CounterweightShape::Box { width, .. } => format!(" · box, {} m wide", nine_digits(width)),
         CounterweightShape::Point | CounterweightShape::Disc { .. } => String::new(),
-    };
-    let heads = ["counterweight on link", "kg", "at m", "left of axis m", size].map(String::from);
-    let mut table = TextTable::new(some(heads));
-    for w in &report.weights {
-        let (_, size) = w.free_size();
-        let [mass, at, across, size] = [w.mass, w.at, w.across, size].map(|x| fixed_or_finer(x, 6));
-        table.row(some([w.link.clone(), mass, at, across, size]));
     }
+}
+
+/// Formats a Pareto front.
+pub fn front_table(points: &[FrontPoint]) -> TextTable {
+    let mut table = TextTable::new(FRONT_HEADINGS);
+    points.iter().for_each(|point| table.row(front_cells(point)));
+    table
+}
+
+/// Formats the report as text.
+pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
+    let (table, shape) = (weights_table(&report.weights), shape_words(&report.weights));
     let bought = report.bars.as_ref().is_some_and(|bars| bars.exact_value.is_some());
     let sure = match report.certified {
         true => format!("within {:.1e} of the best", report.gap),
@@ -645,9 +687,7 @@ pub fn text(report: &CounterweightReport, machine: &Machine) -> String {
         text.push_str(&format!("\n{bounds}in the results and the new file, the payload is {middle} kg\n\n{table}"));
     }
     if !report.front_points.is_empty() {
-        let mut table = TextTable::new(FRONT_HEADINGS);
-        report.front_points.iter().for_each(|point| table.row(front_cells(point)));
-        text.push_str(&format!("\n{table}"));
+        text.push_str(&format!("\n{}", front_table(&report.front_points)));
     }
     text
 }

@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 
 use super::model::Assembly;
 use crate::machine::{BALANCE_TOLERANCE, Inertia};
-use crate::planar::Vector;
+use crate::planar::{MAX_DRIVES, Vector};
 
 /// Mass that is carried off the end effector of its carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +26,23 @@ pub struct CarriedOffset {
     pub beside: Vector,
     /// Height above the end effector, along z of the carrier, m.
     pub above: f64,
+}
+
+/// Moments of a block with what it carries, a point mass at its end effector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedBlock {
+    /// m_c, kg.
+    pub mass: f64,
+    /// First moment of what it carries beside the end effector, kg m, in the plane of the block.
+    pub beside: Vector,
+    /// The same along its axis z, from the end effector, kg m.
+    pub along: f64,
+    /// First moment of all bodies along z, from the mount, kg m.
+    pub height: f64,
+    /// First moments Σ m h a_k of its drives weighted with heights, kg m².
+    pub weighted: [Vector; MAX_DRIVES],
+    /// The machine with the carried mass at its end effector.
+    pub inertia: Inertia,
 }
 
 /// What keeps a block from being silent.
@@ -88,8 +105,8 @@ impl Assembly {
         self.carried_by(Some(block)).map(of).sum()
     }
 
-    /// Returns what keeps a block from being silent.
-    pub fn conditions(&self, block: usize) -> BlockConditions {
+    /// Returns the moments of a block and of what it carries, which move with its drives.
+    pub fn loaded(&self, block: usize) -> LoadedBlock {
         let own = &self.blocks()[block];
         let mass = self.mass_above(block) - own.inertia.mass();
         let moment = self.moment_above(block);
@@ -99,7 +116,15 @@ impl Assembly {
         inertia.add(mass, 0.0, held_by, &tip);
         let (beside, along) = (own.mount.in_plane(&moment), own.mount.axes.column(2).dot(&moment));
         let height = own.platform_height() * mass + along;
-        let mean = (own.axial.total() + height) / inertia.mass.max(f64::MIN_POSITIVE);
+        let weighted = std::array::from_fn(|k| own.axial.weighted()[k] + height * tip[k]);
+        LoadedBlock { mass, beside, along, height: own.axial.total() + height, weighted, inertia }
+    }
+
+    /// Returns what keeps a block from being silent.
+    pub fn conditions(&self, block: usize) -> BlockConditions {
+        let LoadedBlock { mass, beside, along, height, weighted, inertia } = self.loaded(block);
+        let tip = &inertia.end_effector;
+        let mean = height / inertia.mass.max(f64::MIN_POSITIVE);
         let most = |of: &dyn Fn(usize) -> f64| (0..inertia.drives).map(of).fold(0.0, f64::max);
         BlockConditions {
             carried: CarriedOffset {
@@ -110,8 +135,13 @@ impl Assembly {
             force: inertia.force_residual(),
             coupling: inertia.invariance_residual(),
             ground: most(&|k| (beside.conj() * tip[k]).norm()),
-            tilt: most(&|k| (own.axial.weighted()[k] + height * tip[k] - mean * inertia.g[k]).norm()),
+            tilt: most(&|k| (weighted[k] - mean * inertia.g[k]).norm()),
             inertia,
         }
+    }
+
+    /// Σ D_k of all blocks, each with what it carries, where all C_kl vanish, kg m².
+    pub fn total_momentum(&self) -> f64 {
+        (0..self.blocks().len()).map(|block| self.loaded(block).inertia.total_momentum()).sum()
     }
 }

@@ -101,6 +101,16 @@ pub fn parse(text: &str, file: &str, find: FindMachine<'_>) -> Result<Assembly, 
     parse_with(text, file, &AssemblyWords, &|stated| read(stated, find))
 }
 
+impl Assembly {
+    /// Returns the assembly as TOML, with all machines written out, from which [`parse`] returns an equal one.
+    ///
+    /// # Panics
+    /// Never: every assembly can be written.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(&self.spec()).expect("an assembly is plain data")
+    }
+}
+
 fn read(file: &StatedFile, find: FindMachine<'_>) -> Result<Assembly, FirstProblem> {
     let problem = |problem: Problem| {
         let text = problem.text(&AssemblyWords);

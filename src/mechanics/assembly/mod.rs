@@ -38,7 +38,7 @@ mod words;
 pub use block::{Block, Mount};
 pub use catalog::{builtin_assemblies, builtin_text};
 pub use compliant_base::{BaseState, Compliance, ComplianceError};
-pub use condition::{BlockConditions, CarriedOffset, Reacting};
+pub use condition::{BlockConditions, CarriedOffset, LoadedBlock, Reacting};
 pub use file::{AssemblySpec, BlockSpec, FindMachine, parse};
 pub use free_base::{Attitude, BaseMotion, SpatialBase};
 pub use model::{Assembly, AssemblyError, MAX_BLOCKS};

@@ -167,6 +167,39 @@ impl Assembly {
         (0..self.blocks.len()).filter(move |i| self.blocks[*i].mount.on == carrier)
     }
 
+    /// Returns a block with all that it carries, on the base, and which blocks these are.
+    pub fn branch(&self, block: usize) -> (Self, Vec<usize>) {
+        let mut kept = vec![block];
+        kept.extend(self.order.iter().filter(|i| **i != block && self.is_carried_by(**i, block)));
+        let place = |i: usize| kept.iter().position(|own| *own == i);
+        let own = kept.iter().map(|i| {
+            let mut own = self.blocks[*i].clone();
+            own.mount.on = own.mount.on.and_then(place);
+            own
+        });
+        let blocks: Vec<Block> = own.collect();
+        let order = (0..kept.len()).collect();
+        (Self { name: self.name.clone(), summary: self.summary.clone(), gravity: self.gravity, blocks, order }, kept)
+    }
+
+    /// Returns whether a block is carried by another, directly or by way of others.
+    fn is_carried_by(&self, block: usize, carrier: usize) -> bool {
+        self.blocks[block].mount.on.is_some_and(|on| on == carrier || self.is_carried_by(on, carrier))
+    }
+
+    /// Number of the first link of a block, if the links of all blocks are counted in their order, from 0.
+    pub fn first_link(&self, block: usize) -> usize {
+        self.blocks[..block].iter().map(|own| own.machine.links().len()).sum()
+    }
+
+    /// Returns the block of a link that is counted through all blocks, and its number there; `None` if there is no such
+    /// link.
+    pub fn link_at(&self, number: usize) -> Option<(usize, usize)> {
+        let all = self.blocks.iter().enumerate();
+        let mut each = all.flat_map(|(i, own)| (0..own.machine.links().len()).map(move |link| (i, link)));
+        each.nth(number)
+    }
+
     /// Mass of a block and of all that it carries, kg.
     pub fn mass_above(&self, block: usize) -> f64 {
         // Carriers come first, so no block is met twice and the recursion ends.

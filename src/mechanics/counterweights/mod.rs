@@ -13,9 +13,11 @@
 //! | ρ, d | density and thickness of the discs | kg/m³, m |
 //! | D_k | coefficient of q̇_k in the angular momentum about B, (6) | kg m² |
 
+mod assembly;
 mod broken;
 mod cell;
 mod front;
+mod link_part;
 mod payload;
 mod pin_sector;
 mod place;
@@ -30,6 +32,7 @@ mod search_node;
 mod solution;
 mod spec;
 mod stock;
+mod subject;
 mod task;
 mod tolerance;
 mod units;
@@ -37,6 +40,7 @@ mod unknowns;
 
 pub use crate::machine::MATERIALS;
 pub use crate::machine::ranges::DENSITY as DENSITY_RANGE;
+pub use assembly::{AssemblyFrontSearch, place_in_assembly, reachable_goals};
 pub use broken::BrokenBound;
 pub use front::{END_TOLERANCE, Front, FrontSearch, front, front_while};
 pub use payload::{PayloadResidual, over_payloads};
@@ -48,4 +52,5 @@ pub use spec::{ACROSS_RANGE, CounterweightSite, CounterweightSpec, FreeRotor, Ob
 pub use stock::{
     BOX_WIDTH_RANGE, CounterweightForm, CounterweightKind, CounterweightStock, INNER_RADIUS_RANGE, THICKNESS_RANGE,
 };
-pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual};
+pub use subject::SpatialGoal;
+pub use tolerance::{PlacementTolerance, WorstResidual, worst_residual, worst_residual_in_assembly};

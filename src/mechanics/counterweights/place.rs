@@ -5,18 +5,20 @@ use super::program::SOLVER_ROUNDING;
 use super::refusal::CounterweightError;
 use super::relief::{across_relief, sufficient_reliefs};
 use super::search_node::BalanceGoal;
-use super::spec::{CounterweightSite, CounterweightSpec, Objective};
+use super::spec::{CounterweightSpec, Objective};
+use super::subject::{SpatialGoal, Subject};
 use super::task::CounterweightTask;
+use crate::assembly::{Assembly, Reacting};
 use crate::machine::{Inertia, Machine};
 use crate::planar::Vector;
 use stillbase_convex::{NoOptimum, Optimum};
 
-/// Counterweights, and the machine that carries them.
+/// Counterweights, and what carries them: a machine, or an assembly.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlacedCounterweights {
-    /// The machine, balanced to rounding. Over a range of payloads, its largest residual is minimal, and it carries the
+pub struct PlacedCounterweights<Carrier = Machine> {
+    /// The machine, or the assembly, balanced to rounding. Over a range of payloads, its largest residual is minimal, and it carries the
     /// mean payload.
-    pub machine: Machine,
+    pub machine: Carrier,
     /// Total mass of the counterweights, kg.
     pub added_mass: f64,
     /// Value of the objective.
@@ -27,7 +29,15 @@ pub struct PlacedCounterweights {
     pub unit: f64,
 }
 
-impl PlacedCounterweights {
+impl PlacedCounterweights<Assembly> {
+    /// Returns the counterweights of a machine by itself.
+    pub(super) fn of_machine(self) -> PlacedCounterweights {
+        let Self { machine: whole, added_mass, value, gap, unit } = self;
+        PlacedCounterweights { machine: whole.blocks()[0].machine.clone(), added_mass, value, gap, unit }
+    }
+}
+
+impl<Carrier> PlacedCounterweights<Carrier> {
     /// Returns the gap as a share of the value, or of the unit of the objective if that is larger.
     pub fn relative_gap(&self) -> f64 {
         self.gap / self.value.abs().max(self.unit)
@@ -75,10 +85,28 @@ pub fn place_weights_with(
     spec: &CounterweightSpec,
     beyond: &[Vector],
 ) -> Result<PlacedCounterweights, CounterweightError> {
-    let problem = CounterweightProblem::new(machine, spec, beyond)?;
-    let one = CounterweightTask::new(&problem, machine, spec, beyond);
-    problem.check().map_err(|why| one.with_reliefs(why))?;
+    let whole = Assembly::from(machine.clone());
+    place(Subject::machine(&whole, beyond), spec).map(PlacedCounterweights::of_machine)
+}
+
+/// Finds the counterweights of a machine, or of all blocks of an assembly together.
+///
+/// # Errors
+/// As [`place_weights`].
+pub(super) fn place(
+    subject: Subject,
+    spec: &CounterweightSpec,
+) -> Result<PlacedCounterweights<Assembly>, CounterweightError> {
+    let problem = CounterweightProblem::new(&subject, spec)?;
+    let one = CounterweightTask::new(&problem, subject, spec);
+    problem.check(&subject).map_err(|why| one.with_reliefs(why))?;
     one.found()?.map_err(|multipliers| one.refusal(&multipliers))
+}
+
+/// Returns whether counterweights can balance the subject; false if the solver fails.
+pub(super) fn is_possible(subject: Subject, spec: &CounterweightSpec) -> bool {
+    let found = |problem: &CounterweightProblem| CounterweightTask::new(problem, subject, spec).is_possible();
+    CounterweightProblem::new(&subject, spec).is_ok_and(|problem| problem.check(&subject).is_ok() && found(&problem))
 }
 
 /// As [`place_weights`], but `None` where there are no counterweights: the reason, which takes longer, is not sought.
@@ -90,9 +118,12 @@ pub fn weights_if_any(
     machine: &Machine,
     spec: &CounterweightSpec,
 ) -> Result<Option<PlacedCounterweights>, CounterweightError> {
-    let problem = CounterweightProblem::new(machine, spec, &[])?;
-    problem.check()?;
-    Ok(CounterweightTask::new(&problem, machine, spec, &[]).found()?.ok())
+    let whole = Assembly::from(machine.clone());
+    let subject = Subject::machine(&whole, &[]);
+    let problem = CounterweightProblem::new(&subject, spec)?;
+    problem.check(&subject)?;
+    let found = CounterweightTask::new(&problem, subject, spec).found()?.ok();
+    Ok(found.map(PlacedCounterweights::of_machine))
 }
 
 /// Returns the part of each residual of (7) and (8), kg m or kg m², that no counterweights on the listed links remove,
@@ -106,16 +137,26 @@ pub fn unreachable_by_weights(
     request: &CounterweightSpec,
     beyond: &[Vector],
 ) -> Result<Vec<Vector>, CounterweightError> {
-    Ok(CounterweightProblem::new(machine, request, beyond)?.unreachable(request.sites.len()))
+    let whole = Assembly::from(machine.clone());
+    let problem = CounterweightProblem::new(&Subject::machine(&whole, beyond), request)?;
+    Ok(problem.unreachable(request.sites.len()))
+}
+
+/// Counterweights of all blocks.
+type Placed = PlacedCounterweights<Assembly>;
+
+/// Returns the constants of each block with what it carries.
+fn inertias(whole: &Assembly) -> Vec<Inertia> {
+    (0..whole.blocks().len()).map(|block| whole.loaded(block).inertia).collect()
 }
 
 impl CounterweightTask<'_> {
     /// Finds the counterweights. If there are none, returns the multipliers of the bounds that prove the problem
     /// without clearance infeasible. The list is empty if only the clearance makes the problem infeasible.
-    fn found(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
+    fn found(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
         if self.problem.needs_nothing(self.spec) {
             let (machine, unit) = (self.problem.bare.clone(), self.unit());
-            let value = self.spec.objective.of(0.0, &self.problem.inertia);
+            let value = self.spec.objective.of_all(0.0, &self.problem.inertias);
             return Ok(Ok(PlacedCounterweights { machine, added_mass: 0.0, value, gap: 0.0, unit }));
         }
         if self.balance() == BalanceGoal::Nearest {
@@ -133,7 +174,7 @@ impl CounterweightTask<'_> {
     }
 
     /// Returns the solution of least inertia among those of equal mass, if only mass is minimised and Σ D_k is free.
-    fn least_inertia(&self, best: PlacedCounterweights, least: &Optimum) -> PlacedCounterweights {
+    fn least_inertia(&self, best: Placed, least: &Optimum) -> Placed {
         let CounterweightSpec { objective, max_inertia, .. } = self.spec;
         if objective.depends_on_inertia() || objective.mass == 0.0 || max_inertia.is_some() {
             return best;
@@ -147,41 +188,43 @@ impl CounterweightTask<'_> {
     }
 
     /// Returns a solution without the counterweights of negligible mass, if one is optimal within [`MAX_GAP`].
-    fn simpler(&self, best: PlacedCounterweights) -> PlacedCounterweights {
-        let weights = || best.machine.spec().counterweights.iter().filter(|weight| !weight.fixed);
-        let is_light = |mass: f64| mass < NEGLIGIBLE_MASS_FRACTION * best.added_mass;
-        if !weights().any(|weight| is_light(weight.mass)) {
+    fn simpler(&self, best: Placed) -> Placed {
+        let masses = self.subject.masses(self.spec, &best.machine);
+        // Of several blocks each has its own measure of what is light.
+        let block = |j: usize| self.subject.whole.link_at(self.spec.sites[j].link).map(|(block, _)| block);
+        let of_block = |j: usize| -> f64 {
+            let own = masses.iter().enumerate().filter(|(i, _)| block(*i) == block(j));
+            own.map(|(_, mass)| mass).sum()
+        };
+        let carries = |j: usize| masses[j] > 0.0 && masses[j] >= NEGLIGIBLE_MASS_FRACTION * of_block(j);
+        if !(0..masses.len()).any(|j| masses[j] > 0.0 && !carries(j)) {
             return best;
         }
-        let carries = |site: &CounterweightSite| {
-            let link = &self.machine.links()[site.link].name;
-            weights().any(|weight| weight.link == *link && !is_light(weight.mass))
-        };
-        let sites: Vec<CounterweightSite> = self.spec.sites.iter().copied().filter(carries).collect();
+        let sites = (0..masses.len()).filter(|j| carries(*j)).map(|j| self.spec.sites[j]).collect();
         let fewer = CounterweightSpec { sites, ..self.spec.clone() };
         self.exact(&fewer).and_then(|found| self.within_max_gap(found, best.value - best.gap)).unwrap_or(best)
     }
 
     /// Returns the optimum of another request with exact balance, if there is one.
-    fn exact(&self, spec: &CounterweightSpec) -> Option<PlacedCounterweights> {
-        let problem = CounterweightProblem::new(self.machine, spec, self.beyond).ok()?;
-        problem.check().ok()?;
-        let one = CounterweightTask::new(&problem, self.machine, spec, self.beyond);
+    fn exact(&self, spec: &CounterweightSpec) -> Option<Placed> {
+        let problem = CounterweightProblem::new(&self.subject, spec).ok()?;
+        problem.check(&self.subject).ok()?;
+        let one = CounterweightTask::new(&problem, self.subject, spec);
         let least = one.least(BalanceGoal::Exact).ok()?.ok()?;
         let best = one.placed(&least, BalanceGoal::Exact).ok()?;
         Some(one.least_inertia(best, &least))
     }
 
     /// Returns a solution with its gap to `bound`, a lower bound of the objective; `None` if the gap is too large.
-    fn within_max_gap(&self, found: PlacedCounterweights, bound: f64) -> Option<PlacedCounterweights> {
-        let value = self.spec.objective.of(found.added_mass, &Inertia::of(&found.machine));
+    fn within_max_gap(&self, found: Placed, bound: f64) -> Option<Placed> {
+        let value = self.spec.objective.of_all(found.added_mass, &inertias(&found.machine));
         let gap = (value - bound).max(found.gap);
         (gap < MAX_GAP * self.unit()).then_some(PlacedCounterweights { value, gap, unit: self.unit(), ..found })
     }
 
     /// Minimises the largest residual over all payloads, then the objective. Prefers exact balance with the mean
     /// payload if its objective is no larger, within [`MAX_GAP`].
-    fn nearest(&self) -> Result<Result<PlacedCounterweights, Vec<f64>>, CounterweightError> {
+    fn nearest(&self) -> Result<Result<Placed, Vec<f64>>, CounterweightError> {
         let found = |balance| match self.least(balance)? {
             Ok(least) => Ok(Ok(least)),
             Err(NoOptimum::Contradiction(multipliers)) => Ok(Err(multipliers)),
@@ -219,31 +262,37 @@ impl CounterweightTask<'_> {
         TIE_BREAK_WEIGHT / self.problem.units.length.powi(2)
     }
 
-    fn placed(&self, least: &Optimum, balance: BalanceGoal) -> Result<PlacedCounterweights, CounterweightError> {
+    fn placed(&self, least: &Optimum, balance: BalanceGoal) -> Result<Placed, CounterweightError> {
         let (added_mass, machine) = self.machine(least, balance)?;
-        let value = self.spec.objective.of(added_mass, &Inertia::of(&machine));
+        let value = self.spec.objective.of_all(added_mass, &inertias(&machine));
         // The gap is that of the finished machine: the dual value is a lower bound of the objective.
         let gap = (value - self.bound(least)).max(self.unit() * least.gap);
         Ok(PlacedCounterweights { machine, added_mass, value, gap, unit: self.unit() })
     }
 
-    /// Returns the added mass, kg, and the machine of a solution.
-    pub(super) fn machine(&self, least: &Optimum, balance: BalanceGoal) -> Result<(f64, Machine), CounterweightError> {
-        let (added_mass, machine) = self.problem.machine(self.spec, &self.scaled, &least.x, balance)?;
-        let is_settled =
-            balance != BalanceGoal::Exact || !self.beyond.is_empty() || Inertia::of(&machine).is_balanced();
-        match is_settled {
-            true => Ok((added_mass, machine)),
+    /// Returns the added mass, kg, and the blocks of a solution.
+    pub(super) fn machine(&self, least: &Optimum, balance: BalanceGoal) -> Result<(f64, Assembly), CounterweightError> {
+        let (added_mass, whole) = self.problem.machine(self.spec, &self.scaled, &least.x, balance)?;
+        let is_free = balance != BalanceGoal::Exact || !self.subject.beyond.is_empty();
+        match is_free || (0..whole.blocks().len()).all(|block| self.is_settled(&whole, block)) {
+            true => Ok((added_mass, whole)),
             false => Err(CounterweightError::Failed("rounding leaves more than balance tolerates".into())),
         }
     }
 
+    /// Returns whether a block meets its conditions.
+    fn is_settled(&self, whole: &Assembly, block: usize) -> bool {
+        let (SpatialGoal { ground, tilt }, of) = (self.subject.goal(block), whole.conditions(block));
+        let reacts = |why: Reacting| of.reasons().any(|own| own == why);
+        of.inertia.is_balanced() && !(ground && reacts(Reacting::Ground)) && !(tilt && reacts(Reacting::Tilt))
+    }
+
     /// Returns whether there are counterweights for another request.
     fn is_feasible(&self, spec: &CounterweightSpec) -> bool {
-        let found =
-            |problem: &CounterweightProblem| CounterweightTask::new(problem, self.machine, spec, self.beyond).found();
-        CounterweightProblem::new(self.machine, spec, self.beyond)
-            .is_ok_and(|problem| problem.check().is_ok() && found(&problem).is_ok_and(|found| found.is_ok()))
+        let found = |problem: &CounterweightProblem| CounterweightTask::new(problem, self.subject, spec).found();
+        CounterweightProblem::new(&self.subject, spec).is_ok_and(|problem| {
+            problem.check(&self.subject).is_ok() && found(&problem).is_ok_and(|found| found.is_ok())
+        })
     }
 
     /// Adds the least sufficient distance from the axes to an error about imbalance across them.
@@ -276,11 +325,17 @@ impl CounterweightTask<'_> {
 impl Objective {
     /// Returns its value for an added mass, kg, and the inertia of the finished machine.
     pub fn of(&self, added_mass: f64, inertia: &Inertia) -> f64 {
-        let diagonal = inertia.diagonals();
-        let torques = diagonal.iter().zip(&self.accelerations).map(|(h, acceleration)| h * acceleration);
+        self.of_all(added_mass, std::slice::from_ref(inertia))
+    }
+
+    /// Returns its value for an added mass, kg, and the inertia of each finished block with what it carries.
+    pub fn of_all(&self, added_mass: f64, inertias: &[Inertia]) -> f64 {
+        let diagonal = || inertias.iter().flat_map(|own| (0..own.drives()).map(|k| own.diagonal(k)));
+        let momenta = inertias.iter().flat_map(|own| (0..own.drives()).map(|k| own.momentum(k).abs()));
+        let torques = diagonal().zip(&self.accelerations).map(|(h, acceleration)| h * acceleration);
         self.mass * added_mass
-            + self.inertia * diagonal.iter().sum::<f64>()
-            + self.momentum * inertia.momenta().iter().map(|d| d.abs()).sum::<f64>()
+            + self.inertia * diagonal().sum::<f64>()
+            + self.momentum * momenta.sum::<f64>()
             + self.torque * torques.fold(0.0, f64::max)
     }
 }

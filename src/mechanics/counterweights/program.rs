@@ -7,8 +7,6 @@ use super::residual::ConditionResidual;
 use super::search_node::{BalanceGoal, SearchNode};
 use super::spec::{CounterweightSpec, Objective, RotorFreedom};
 use super::unknowns::{AffineForm, UnknownIndices};
-use crate::balance::Condition;
-use crate::machine::Machine;
 use crate::planar::Vector;
 use stillbase_convex::{LinearRow, NoOptimum, Optimum, Program, infeasible_bounds};
 
@@ -113,7 +111,7 @@ impl CounterweightProblem {
             let (most, start) = (program.linear.len(), program.at_most.len() - firm.clone().count());
             program.linear.push(1.0);
             for ((bound, _), row) in firm.zip(&mut program.at_most[start..]) {
-                let value = request.value_of(bound, &self.bare);
+                let value = request.value_of(bound, &self.names);
                 let growth = match (relaxed, bound.kind()) {
                     (RelaxedBounds::Value(kind), Some(own)) if own == kind => 1.0,
                     (RelaxedBounds::Factor, Some(_)) => value,
@@ -126,7 +124,7 @@ impl CounterweightProblem {
         program
     }
 
-    /// Adds the conditions (7) and (8).
+    /// Adds the conditions of balance.
     fn enter_balance(&self, unknowns: &UnknownIndices, balance: BalanceGoal, program: &mut Program) {
         let terms = |condition: &ConditionResidual, sign: f64| {
             let each = condition.changes.iter().enumerate();
@@ -155,7 +153,7 @@ impl CounterweightProblem {
         }
         program.linear.push(if balance == BalanceGoal::Nearest { 1.0 } else { 0.0 });
         for condition in &self.conditions {
-            let per = if matches!(condition.condition, Condition::Force(_)) { 1.0 } else { self.reach };
+            let per = if condition.condition.is_force() { 1.0 } else { self.reach };
             if condition.is_touched_across() || condition.ends.iter().any(|end| end.im != 0.0) {
                 let magnitude = |end: Vector| {
                     let (along, across) = (terms(condition, 1.0), terms_across(condition));
@@ -281,7 +279,7 @@ impl CounterweightProblem {
     fn bounds(&self, request: &CounterweightSpec) -> Vec<(Bound, LinearRow)> {
         let (mut all, unknowns) = (Vec::new(), UnknownIndices::of(request, self.drives()));
         for (j, site) in request.sites.iter().enumerate() {
-            let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.bare.links()[site.link].name.clone());
+            let (w, s, link) = (unknowns.w(j), unknowns.s(j), self.names[site.link].clone());
             all.push((Bound::From(link.clone()), LinearRow::new([(w, site.from), (s, -1.0)], 0.0)));
             all.push((Bound::To(link.clone()), LinearRow::new([(s, 1.0), (w, -site.to)], 0.0)));
             if let Some(t) = unknowns.t(j) {
@@ -324,10 +322,10 @@ impl Bound {
 
 impl CounterweightSpec {
     /// Returns the value of a bound that may be relaxed.
-    fn value_of(&self, bound: &Bound, machine: &Machine) -> f64 {
+    fn value_of(&self, bound: &Bound, names: &[String]) -> f64 {
         match bound {
             Bound::Most(link) => {
-                let own = self.sites.iter().find(|site| machine.links()[site.link].name == *link);
+                let own = self.sites.iter().find(|site| names[site.link] == *link);
                 own.map_or(0.0, |site| site.most)
             }
             Bound::Mass => self.max_added_mass.unwrap_or_default(),

@@ -192,6 +192,9 @@ pub enum CounterweightError {
     /// No masses and positions on these links balance the machine.
     #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
     TooFew,
+    /// No masses and positions on these links balance a block of an assembly.
+    #[error("block {0}: no counterweights on these links alone balance it: want more of its links that may carry one")]
+    TooFewOnBlock(String),
     /// Every solution would violate the clearance of a pin.
     #[error(
         "no counterweights balance this machine and stay {clearance} m clear of every pin{}",
@@ -214,6 +217,9 @@ pub enum CounterweightError {
         "the torque of a motor in a joint or behind a gear depends on more than its drive: want mass or inertia to be least"
     )]
     Coupled,
+    /// A range of payloads is asked for, and the machine is a block of an assembly.
+    #[error("a range of payloads is for one machine by itself: want payload.mass of a block")]
+    PayloadOfAssembly,
     /// The solver failed.
     #[error(
         "whether there are such counterweights is closer than the solver can tell ({0}): want bounds a little wider, or tighter"

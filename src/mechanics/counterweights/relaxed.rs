@@ -5,7 +5,9 @@ use super::problem::CounterweightProblem;
 use super::refusal::{BoundKind, CounterweightError, RelaxedBounds};
 use super::search_node::SearchNode;
 use super::spec::{CounterweightSpec, Objective};
+use super::subject::Subject;
 use super::task::CounterweightTask;
+use crate::assembly::Assembly;
 use crate::machine::Machine;
 use stillbase_convex::NoOptimum;
 
@@ -20,16 +22,18 @@ pub fn relaxed_weights_if_any(
     request: &CounterweightSpec,
     relaxed: RelaxedBounds,
 ) -> Result<Option<PlacedCounterweights>, CounterweightError> {
-    let problem = CounterweightProblem::new(machine, request, &[])?;
-    problem.check()?;
+    let whole = Assembly::from(machine.clone());
+    let subject = Subject::machine(&whole, &[]);
+    let problem = CounterweightProblem::new(&subject, request)?;
+    problem.check(&subject)?;
     let spec = CounterweightSpec { objective: Objective::mass(), ..request.clone() };
-    let task = CounterweightTask::new(&problem, machine, &spec, &[]);
+    let task = CounterweightTask::new(&problem, subject, &spec);
     let (all, unit) = (SearchNode::unconstrained(&task.scaled, task.balance()), problem.units.of_relaxed(relaxed));
     match task.on(&SearchNode { least: Some(relaxed), ..all })? {
         Ok(least) => {
             let (added_mass, machine) = task.machine(&least, task.balance())?;
             let (value, gap) = (unit * least.value, unit * least.gap);
-            Ok(Some(PlacedCounterweights { machine, added_mass, value, gap, unit }))
+            Ok(Some(PlacedCounterweights { machine, added_mass, value, gap, unit }.of_machine()))
         }
         Err(NoOptimum::Contradiction(_)) => Ok(None),
         Err(NoOptimum::Failed(why)) => Err(CounterweightError::Failed(why)),

@@ -6,6 +6,7 @@ use super::refusal::{BoundKind, BoundRelaxation, RelaxedBounds};
 use super::search_node::SearchNode;
 use super::spec::CounterweightSpec;
 use super::task::CounterweightTask;
+use crate::machine::Machine;
 
 /// Factor by which all but the last of several bounds are relaxed beyond their minimum, so that the last needs less
 /// relaxation.
@@ -39,9 +40,13 @@ pub(super) fn across_relief(
     is_feasible: &dyn Fn(&CounterweightSpec) -> bool,
 ) -> Vec<Vec<BoundRelaxation>> {
     let Some(least) = together(one, &[BoundKind::Across], is_feasible) else { return Vec::new() };
-    let (links, payload) = (one.problem.bare.links(), one.problem.bare.spec().payload);
-    let held = if payload.mass > 0.0 { payload.offset[1].abs() } else { 0.0 };
-    let masses = links.iter().map(|link| link.com_normal.abs()).fold(held, f64::max);
+    let off_axis = |machine: &Machine| {
+        let payload = machine.spec().payload;
+        let held = if payload.mass > 0.0 { payload.offset[1].abs() } else { 0.0 };
+        machine.links().iter().map(|link| link.com_normal.abs()).fold(held, f64::max)
+    };
+    let blocks = one.problem.bare.blocks().iter();
+    let masses = blocks.map(|block| off_axis(&block.machine)).fold(0.0, f64::max);
     let ample = BoundKind::Across.rounded(masses);
     let enough = |one: BoundRelaxation| match (one, ample) {
         (BoundRelaxation::Across(least), BoundRelaxation::Across(ample)) if ample > least => {
@@ -122,13 +127,13 @@ fn least_across(one: &CounterweightTask, request: &CounterweightSpec) -> Option<
     let is_enough = |across: f64| {
         let mut request = request.clone();
         BoundRelaxation::Across(across).enter(&mut request);
-        let problem = CounterweightProblem::new(one.machine, &request, one.beyond).ok();
+        let problem = CounterweightProblem::new(&one.subject, &request).ok();
         let is_possible = |problem: &CounterweightProblem| {
-            problem.check().is_ok() && CounterweightTask::new(problem, one.machine, &request, one.beyond).is_possible()
+            problem.check(&one.subject).is_ok() && CounterweightTask::new(problem, one.subject, &request).is_possible()
         };
         problem.is_some_and(|problem| is_possible(&problem))
     };
-    let reach = one.problem.bare.reach();
+    let reach = one.problem.reach * one.problem.units.length;
     if !is_enough(reach) {
         return None;
     }

@@ -1,4 +1,4 @@
-//! Evaluates a solution of the cone program: its objective, and the machine with counterweights and rotors.
+//! Evaluates a solution of the cone program: its objective, and the blocks with counterweights and rotors.
 
 use super::cell::DiscPlace;
 use super::problem::CounterweightProblem;
@@ -7,8 +7,9 @@ use super::residual::ConditionResidual;
 use super::search_node::{BalanceGoal, SearchNode};
 use super::spec::{CounterweightSite, CounterweightSpec, RotorFreedom};
 use super::unknowns::{AffineForm, UnknownIndices};
+use crate::assembly::Assembly;
 use crate::balance::{LinearEquation, SolutionSpace};
-use crate::machine::{Counterweight, Machine, Rotor};
+use crate::machine::{Counterweight, Machine, MachineError, Rotor};
 
 /// Mass w and first moments s = w x and t = w y, in the units of the machine, of each counterweight, with its site.
 type Found = Vec<(CounterweightSite, [f64; 3])>;
@@ -83,19 +84,18 @@ impl CounterweightProblem {
         (w > min_mass).then(|| DiscPlace { mass: w, at: s / w, across: t / w })
     }
 
-    /// Returns the added mass, kg, and the machine with the counterweights and rotors of a solution. With exact balance
-    /// the machine is balanced to rounding. `asked` is the request in SI units, and `request` in those of the machine.
+    /// Returns the added mass, kg, and the blocks with the counterweights and rotors of a solution. With exact balance
+    /// they are balanced to rounding. `asked` is the request in SI units, and `request` in those of the problem.
     ///
     /// # Errors
-    /// If the machine is not valid.
+    /// If a machine is not valid.
     pub fn machine(
         &self,
         asked: &CounterweightSpec,
         request: &CounterweightSpec,
         x: &[f64],
         balance: BalanceGoal,
-    ) -> Result<(f64, Machine), CounterweightError> {
-        let unknowns = UnknownIndices::of(request, self.drives());
+    ) -> Result<(f64, Assembly), CounterweightError> {
         let sites = request.sites.iter().enumerate();
         let all = sites.map(|(j, site)| {
             let [w, s, t] = self.moments(request, x, j);
@@ -107,13 +107,33 @@ impl CounterweightProblem {
         for _ in 0..if balance == BalanceGoal::Exact { 3 } else { 0 } {
             self.refine(request, &mut found);
         }
-        let mut spec = self.bare.spec().clone();
-        let weight = |(site, [w, s, t]): &(CounterweightSite, [f64; 3])| {
-            let (link, mass) = (self.bare.links()[site.link].name.clone(), self.units.mass * w);
-            Counterweight::new(link, mass, [s, t].map(|moment| moment / w * self.units.length), asked.stock.shape(mass))
-        };
-        spec.counterweights.extend(found.iter().map(weight));
+        let whole = self.bare.clone().with_machines(|name, machine| self.loaded(name, &machine, asked, x, &found))?;
+        let added: f64 = found.iter().map(|(_, [w, ..])| w).sum();
+        Ok((self.units.mass * added, whole))
+    }
+
+    /// Returns the machine of a block with the counterweights and rotors of a solution.
+    fn loaded(
+        &self,
+        name: &str,
+        bare: &Machine,
+        asked: &CounterweightSpec,
+        x: &[f64],
+        found: &Found,
+    ) -> Result<Machine, MachineError> {
+        let (unknowns, mut spec) = (UnknownIndices::of(asked, self.drives()), bare.spec().clone());
+        let is_own = |block: usize| self.bare.blocks()[block].name == name;
+        for (site, [w, s, t]) in found {
+            let Some((_, link)) = self.bare.link_at(site.link).filter(|(block, _)| is_own(*block)) else { continue };
+            let (link, mass) = (bare.links()[link].name.clone(), self.units.mass * w);
+            let place = [s, t].map(|moment| moment / w * self.units.length);
+            spec.counterweights.push(Counterweight::new(link, mass, place, asked.stock.shape(mass)));
+        }
         for (i, rotor) in asked.rotors.iter().enumerate() {
+            let (block, drive) = self.drive_at(rotor.drive);
+            if !is_own(block) {
+                continue;
+            }
             let (present, value) = (self.rotors[rotor.drive], x[unknowns.rotor(i)]);
             let found = match rotor.parameter {
                 RotorFreedom::Inertia([low, high]) => {
@@ -124,10 +144,9 @@ impl CounterweightProblem {
                     Rotor { ratio: other_than_zero(ratio), ..present }
                 }
             };
-            spec.drives[rotor.drive].rotor = (found.inertia > 0.0).then_some(found);
+            spec.drives[drive].rotor = (found.inertia > 0.0).then_some(found);
         }
-        let added: f64 = found.iter().map(|(_, [w, ..])| w).sum();
-        Ok((self.units.mass * added, Machine::new(spec)?))
+        Machine::new(spec)
     }
 
     /// Removes the residual of the conditions by the least change of the counterweights.

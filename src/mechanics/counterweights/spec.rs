@@ -2,13 +2,14 @@
 
 use super::refusal::CounterweightError;
 use super::stock::CounterweightStock;
+use super::subject::Subject;
 use crate::machine::{Machine, ranges};
 use stillbase_settings::range::Range;
 
 /// Bounds of position and mass of a counterweight on a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CounterweightSite {
-    /// The link, counted from 0.
+    /// The link, counted from 0; of an assembly through the links of all blocks, in their order.
     pub link: usize,
     /// Lower bound of its position along the axis, m from the root, positive towards the tip.
     pub from: f64,
@@ -45,7 +46,8 @@ pub struct Objective {
     pub momentum: f64,
     /// Weight of the greatest torque, 1/(N m).
     pub torque: f64,
-    /// Greatest |q̈_k| of each drive in the motion, rad/s², from which the torque is computed.
+    /// Greatest |q̈_k| of each drive in the motion, rad/s², from which the torque is computed; of an assembly the drives of
+    /// all blocks, in their order.
     pub accelerations: Vec<f64>,
 }
 
@@ -78,7 +80,7 @@ pub enum RotorFreedom {
 /// A rotor with a free parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeRotor {
-    /// The drive whose motor has the rotor, counted from 0.
+    /// The drive whose motor has the rotor, counted from 0; of an assembly through the drives of all blocks.
     pub drive: usize,
     /// The free parameter.
     pub parameter: RotorFreedom,
@@ -104,7 +106,7 @@ pub struct CounterweightSpec {
     /// Rotors with a free parameter, which is optimised with the counterweights.
     pub rotors: Vec<FreeRotor>,
     /// Smallest and largest mass of the payload, kg. The largest residual of (7) and (8) over this range is minimised
-    /// before the objective. `None`: the payload of the machine.
+    /// before the objective. `None`: the payload of the machine. An assembly has none.
     pub payload: Option<[f64; 2]>,
 }
 
@@ -119,8 +121,8 @@ impl CounterweightSpec {
         Self { sites, stock, objective, max_added_mass, max_inertia, clearance, rotors: Vec::new(), payload }
     }
 
-    /// Checks that the request is valid for a machine.
-    pub(super) fn check(&self, machine: &Machine) -> Result<(), CounterweightError> {
+    /// Checks that the request is valid for a machine, or for an assembly.
+    pub(super) fn check(&self, subject: &Subject) -> Result<(), CounterweightError> {
         let within = |what: &str, value: f64, range: Range| match range.contains(value) {
             true => Ok(()),
             false => Err(CounterweightError::out(what, value, range)),
@@ -145,14 +147,18 @@ impl CounterweightSpec {
         }
         if let Some(ends) = self.payload {
             rising("a payload", ends, ranges::LOAD)?;
+            if subject.goals.is_some() {
+                return Err(CounterweightError::PayloadOfAssembly);
+            }
         }
         for (j, site) in self.sites.iter().enumerate() {
-            let Some(link) = machine.links().get(site.link) else {
-                let want = "one of the machine's links, counted from 0";
+            if subject.whole.link_at(site.link).is_none() {
+                let want = "one of the links, counted from 0";
                 return Err(CounterweightError::out("link number", site.link as f64, want));
-            };
+            }
+            let link = subject.link_name(site.link);
             let bad = |what: &str, value, want: &str| {
-                Err(CounterweightError::out(&format!("link {}: {what}", link.name), value, want))
+                Err(CounterweightError::out(&format!("link {link}: {what}"), value, want))
             };
             if let Some(end) = [site.from, site.to].into_iter().find(|x| !x.is_finite()) {
                 return bad("a range that ends at", end, "finite places, m");
@@ -167,28 +173,32 @@ impl CounterweightSpec {
                 return bad("at most, kg,", site.most, "a mass above 0");
             }
             if self.sites[..j].iter().any(|other| other.link == site.link) {
-                return Err(CounterweightError::Twice(link.name.clone()));
+                return Err(CounterweightError::Twice(link));
             }
         }
-        self.check_rotors(machine)
+        self.check_rotors(subject)
     }
 
-    fn check_rotors(&self, machine: &Machine) -> Result<(), CounterweightError> {
+    fn check_rotors(&self, subject: &Subject) -> Result<(), CounterweightError> {
+        let blocks = subject.whole.blocks().iter().enumerate();
+        let drives: Vec<_> =
+            blocks.flat_map(|(i, block)| block.machine.spec().drives.iter().map(move |drive| (i, drive))).collect();
         for (i, FreeRotor { drive, parameter }) in self.rotors.iter().enumerate() {
-            let Some(of) = machine.spec().drives.get(*drive) else {
-                let want = "one of the machine's drives, counted from 0";
+            let Some((block, of)) = drives.get(*drive).copied() else {
+                let want = "one of the drives, counted from 0";
                 return Err(CounterweightError::out("drive number", *drive as f64, want));
             };
+            let name = subject.name(block, &of.name);
             if self.rotors[..i].iter().any(|other| other.drive == *drive) {
-                return Err(CounterweightError::RotorTwice(of.name.clone()));
+                return Err(CounterweightError::RotorTwice(name));
             }
-            let what = format!("the rotor of drive {}:", of.name);
+            let what = format!("the rotor of drive {name}:");
             match parameter {
                 RotorFreedom::Inertia(ends) => rising(&format!("{what} inertia"), *ends, ranges::INERTIA)?,
                 RotorFreedom::Ratio(ends) => rising(&format!("{what} ratio"), *ends, ranges::RATIO)?,
             }
             if matches!(parameter, RotorFreedom::Ratio(_)) && of.rotor.is_none_or(|rotor| rotor.inertia == 0.0) {
-                return Err(CounterweightError::NoRotor(of.name.clone()));
+                return Err(CounterweightError::NoRotor(name));
             }
         }
         Ok(())

@@ -5,28 +5,21 @@ use super::refusal::CounterweightError;
 use super::search::search;
 use super::search_node::{BalanceGoal, SearchNode};
 use super::spec::CounterweightSpec;
-use crate::machine::Machine;
-use crate::planar::Vector;
+use super::subject::Subject;
 use stillbase_convex::{NoOptimum, Optimum};
 
-/// One request for counterweights on a machine, with the problem derived from it.
+/// One request for counterweights, with the problem derived from it.
 pub(super) struct CounterweightTask<'a> {
     pub problem: &'a CounterweightProblem,
-    pub machine: &'a Machine,
+    pub subject: Subject<'a>,
     pub spec: &'a CounterweightSpec,
-    pub beyond: &'a [Vector],
-    /// The request in the units of the machine, in which it is solved.
+    /// The request in the units of the problem, in which it is solved.
     pub scaled: CounterweightSpec,
 }
 
 impl<'a> CounterweightTask<'a> {
-    pub fn new(
-        problem: &'a CounterweightProblem,
-        machine: &'a Machine,
-        spec: &'a CounterweightSpec,
-        beyond: &'a [Vector],
-    ) -> Self {
-        Self { problem, machine, spec, beyond, scaled: problem.units.request(spec) }
+    pub fn new(problem: &'a CounterweightProblem, subject: Subject<'a>, spec: &'a CounterweightSpec) -> Self {
+        Self { problem, subject, spec, scaled: problem.units.request(spec) }
     }
 
     /// Returns the task with another objective or other bounds on the same sites.
@@ -34,7 +27,7 @@ impl<'a> CounterweightTask<'a> {
     where
         'a: 'b,
     {
-        CounterweightTask::new(self.problem, self.machine, spec, self.beyond)
+        CounterweightTask::new(self.problem, self.subject, spec)
     }
 
     /// Returns the goal: exact balance, or the smallest residual over a range of payloads.

@@ -2,17 +2,19 @@
 //! size has the same problem.
 
 use super::refusal::{BoundKind, RelaxedBounds};
+use super::residual::BlockCondition;
 use super::spec::{CounterweightSite, CounterweightSpec, FreeRotor, Objective, RotorFreedom};
 use super::stock::{CounterweightForm, CounterweightStock};
+use crate::assembly::Assembly;
 use crate::balance::Condition;
-use crate::machine::{Machine, ResolvedLink};
+use crate::machine::ResolvedLink;
 
 /// Units of length and of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Units {
     /// Length of the longest link, m.
     pub length: f64,
-    /// Mass of the heaviest link or of the payload, kg.
+    /// Mass of the heaviest link or payload, kg.
     pub mass: f64,
 }
 
@@ -24,11 +26,14 @@ pub(super) fn ratio_unit(rotor: &FreeRotor) -> f64 {
 }
 
 impl Units {
-    /// Returns the units of a machine.
-    pub fn of(machine: &Machine) -> Self {
+    /// Returns the units of the machines of some blocks.
+    pub fn of(whole: &Assembly) -> Self {
         let or_one = |x: f64| if x > 0.0 { x } else { 1.0 };
-        let length = machine.resolved_links().iter().map(|link| link.length.abs()).fold(0.0, f64::max);
-        let mass = machine.links().iter().map(|link| link.mass).fold(machine.spec().payload.mass, f64::max);
+        let machines = || whole.blocks().iter().map(|block| &block.machine);
+        let lengths = machines().flat_map(|machine| machine.resolved_links()).map(|link| link.length.abs());
+        let length = lengths.fold(0.0, f64::max);
+        let links = machines().flat_map(|machine| machine.links()).map(|link| link.mass);
+        let mass = links.chain(machines().map(|machine| machine.spec().payload.mass)).fold(0.0, f64::max);
         Self { length: or_one(length), mass: or_one(mass) }
     }
 
@@ -38,10 +43,10 @@ impl Units {
     }
 
     /// Returns the unit of the residual of a condition, kg m or kg m².
-    pub fn residual(self, condition: Condition) -> f64 {
+    pub fn residual(self, condition: BlockCondition) -> f64 {
         match condition {
-            Condition::Force(_) => self.mass * self.length,
-            Condition::Coupling(..) => self.inertia(),
+            BlockCondition::Balance(Condition::Force(_)) | BlockCondition::Ground(_) => self.mass * self.length,
+            BlockCondition::Balance(Condition::Coupling(..)) | BlockCondition::Tilt(_) => self.inertia(),
         }
     }
 

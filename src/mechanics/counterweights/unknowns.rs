@@ -95,7 +95,7 @@ pub(super) struct AffineForm {
 impl CounterweightProblem {
     /// Returns a and b of the rate ratio r_k = a + b N of a rotor on `drive` with gear ratio N.
     fn rates(&self, drive: usize, k: usize) -> [f64; 2] {
-        match self.bare.motors().on(drive) {
+        match self.stator(drive) {
             _ if k == drive => [0.0, 1.0],
             Some(on) if k == on => [1.0, -1.0],
             _ => [0.0, 0.0],
