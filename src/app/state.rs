@@ -338,7 +338,7 @@ impl AppState {
 
     /// The signals of the machine on display.
     fn signals(&self) -> Arc<Vec<Signal>> {
-        let (machine, shared) = (&self.session.scenario().machine, self.session.frame().shared.map(|base| base.floats));
+        let (machine, shared) = (&self.session.scenario().machine, self.session.frame().shared.map(|base| base.moves));
         let is_known = |known: &(Machine, Option<bool>)| known.0 == *machine && known.1 == shared;
         self.queries().ask_if::<QuickWork<SignalsOf>>(is_known, || (machine.clone(), shared))
     }

@@ -11,6 +11,7 @@ use stillbase_settings::range::quote_clipped;
 use stillbase_settings::text::shell_word;
 
 use super::export_model::{ExportModelArguments, ModelBase, Written};
+use super::exit::print_message;
 use super::failure::Failure;
 use super::input::{MachineArgument, Settings, assembly_scenario};
 use super::output::write_file;
@@ -58,8 +59,12 @@ impl ExportModelArguments {
         let blocks = assembly.blocks();
         let scenario = self.base.as_deref().map(floating).transpose()?.or(scenario);
         let base = scenario.as_ref().and_then(|scenario| match &scenario.base {
-            AssemblyBase::Free(base) => Some(base),
+            AssemblyBase::Free(base) => Some(&base.body),
             AssemblyBase::Fixed => None,
+            AssemblyBase::Compliant(_) => {
+                print_message("note: the model holds the base: springs and dampers under it are left out");
+                None
+            }
         });
         let ending = self.form.check(&self.format, Some(&self.output), self.force, &endings())?;
         let form = Form::of(ending).map_err(Failure::wrong_input)?;
@@ -105,7 +110,7 @@ impl ExportModelArguments {
 /// Returns the scenario of an assembly whose base floats.
 fn floating(name: &str) -> Result<AssemblyScenario, Failure> {
     let found = assembly_scenario(name, &Settings::default())?;
-    found.filter(|found| found.base != AssemblyBase::Fixed).ok_or_else(|| {
+    found.filter(|found| matches!(found.base, AssemblyBase::Free(_))).ok_or_else(|| {
         Failure::wrong_input(format!(
             "--base {name}: it is no scenario of an assembly whose base floats: want one with [base] kind = \"free\""
         ))

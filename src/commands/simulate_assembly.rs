@@ -54,7 +54,7 @@ pub struct AssemblyOutcome {
 impl SharedOutcome {
     /// Returns what reached a base up to a step.
     pub fn of(step: u64, shared: &SharedBase) -> Self {
-        let (verdict, is_fixed) = (AssemblyVerdict::of(step, shared), !shared.floats);
+        let (verdict, is_fixed) = (AssemblyVerdict::of(step, shared), !shared.moves);
         let three = |from: usize| std::array::from_fn(|i| verdict.peaks[from + i]);
         let silent = verdict.silent();
         let each = |from: usize| std::array::from_fn(|i| silent[from + i]);
@@ -63,8 +63,8 @@ impl SharedOutcome {
             peak_moment: is_fixed.then(|| three(3)),
             silent_force: is_fixed.then(|| each(0)),
             silent_moment: is_fixed.then(|| each(3)),
-            base_angle: shared.floats.then_some(verdict.turn[0]),
-            base_angle_end: shared.floats.then_some(verdict.turn[1]),
+            base_angle: shared.moves.then_some(verdict.turn[0]),
+            base_angle_end: shared.moves.then_some(verdict.turn[1]),
             sentence: verdict.sentence(is_fixed),
         }
     }

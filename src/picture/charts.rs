@@ -210,7 +210,7 @@ const SHARED_PLACE: Chart =
 
 /// Returns the charts of a block of an assembly: its own, and those of the base that all blocks share.
 fn charts_of_block(scenario: &Scenario, whole: &AssemblyScenario) -> Vec<Chart> {
-    let floats = whole.base != AssemblyBase::Fixed;
+    let floats = whole.base.moves();
     let mut list = vec![TORQUE, SHARED_MOMENT, SHARED_FORCE];
     list.extend([SHARED_ATTITUDE, SHARED_PLACE].into_iter().filter(|_| floats));
     list.extend([PINS, ANGLES]);

@@ -30,7 +30,7 @@ pub fn document(
     statements: &Statements,
 ) -> String {
     if let Some(shared) = run.shared() {
-        let is_fixed = frame.shared.is_none_or(|shared| !shared.floats);
+        let is_fixed = frame.shared.is_none_or(|shared| !shared.moves);
         let report = AssemblyReport::of(&shared.block().scenario.assembly);
         return report.markdown(&title(scenario), &shared.verdict().sentence(is_fixed))
             + &written(&scenario.notes, &scenario.bookmarks);

@@ -178,7 +178,7 @@ impl Verdict {
         let (by, angle) = peaks.past_limit;
         let name = |i: usize| scenario.machine.angles().get(i).map_or_else(String::new, |a| a.name.clone());
         let is_silent = |shared: SharedBase| shared.silent() == [true; 6];
-        let floating = frame.shared.filter(|shared| shared.floats);
+        let floating = frame.shared.filter(|shared| shared.moves);
         let of_shared =
             floating.map(|SharedBase { turn: [peak, end], shift, .. }| Attitude { peak, end, shift, wanted: None });
         Self {

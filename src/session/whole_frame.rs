@@ -1,7 +1,7 @@
 //! [`WholeFrame`]: the frames of all blocks at one instant, and their signals.
 
 use super::run::Run;
-use crate::assembly::{AssemblyBase, SharedRun};
+use crate::assembly::SharedRun;
 use crate::scenario::Scenario;
 use stillbase_simulation::frame::Frame;
 use stillbase_simulation::signals::{Signal, signals, signals_of_assembly};
@@ -40,6 +40,6 @@ pub fn signals_of_whole(scenario: &Scenario) -> Vec<Signal> {
     let blocks = block.scenario.assembly.blocks().iter();
     signals_of_assembly(
         blocks.map(|block| (block.name.as_str(), &block.machine)),
-        block.scenario.base != AssemblyBase::Fixed,
+        block.scenario.base.moves(),
     )
 }

@@ -99,7 +99,7 @@ pub struct Frame {
 /// The base that several machines share, in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SharedBase {
-    /// What all machines put on a base at rest, about its origin.
+    /// What all machines put on their base, about its origin and in its axes, as it moves.
     pub loads: SpatialLoads,
     /// Attitude of the base; level if it is fixed.
     pub attitude: Attitude,
@@ -107,8 +107,8 @@ pub struct SharedBase {
     pub origin: Vector3<f64>,
     /// Rate of the base in its axes, rad/s.
     pub rate: Vector3<f64>,
-    /// Whether the base floats.
-    pub floats: bool,
+    /// Whether the base can move.
+    pub moves: bool,
     /// Peaks so far of the parts of force, N, and moment, N m, from motion.
     pub peaks: [f64; 6],
     /// Peak so far of Σ|τ|, N m, and of Σ m |a|, N, of all machines.

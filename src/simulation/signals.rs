@@ -169,8 +169,8 @@ pub fn signals_of_block(machine: &Machine, floats: bool) -> Vec<Signal> {
     table
 }
 
-/// Groups of signals that each block of an assembly has among those of all blocks. Torques are known while the base is
-/// held; the others are of the plane of a block, or of its machine by itself.
+/// Groups of signals that each block of an assembly has among those of all blocks; the others are of the plane of a block,
+/// or of its machine by itself.
 const OF_EACH_BLOCK: [&str; 10] =
     ["torque", "angle", "rate", "acceleration", "reference", "error", "joint", "pose", "transmission", "change_point"];
 
@@ -180,8 +180,7 @@ pub fn signals_of_assembly<'a>(blocks: impl Iterator<Item = (&'a str, &'a Machin
     let mut table = Vec::new();
     for (block, (name, machine)) in blocks.enumerate() {
         let own = signals(machine).into_iter();
-        let own =
-            own.filter(|signal| OF_EACH_BLOCK.contains(&signal.group()) && !(floats && signal.group() == "torque"));
+        let own = own.filter(|signal| OF_EACH_BLOCK.contains(&signal.group()));
         table.extend(own.map(|signal| {
             let (group, rest) = signal.path.split_once('/').unwrap_or((&signal.path, ""));
             let (path, label) = (format!("{group}/{name}.{rest}"), format!("{name}: {}", signal.label));

@@ -127,14 +127,6 @@ impl Assembly {
         }
     }
 
-    /// Returns its file, with all machines written out.
-    ///
-    /// # Panics
-    /// Never: every machine can be written.
-    pub fn to_toml(&self) -> String {
-        toml::to_string(&self.spec()).expect("an assembly is plain data")
-    }
-
     /// Returns whether it is a machine by itself.
     pub fn is_of_one(&self) -> bool {
         self.blocks.len() == 1

@@ -13,7 +13,7 @@ use super::{Anchor, ItemChanges, Label, Mesh, MeshSet, Polyline, Rgba, Scene, So
 use stillbase_mechanics::assembly::{BlockState, MAX_BLOCKS, SpatialBase};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_session::Run;
-use stillbase_session::assembly::{AssemblyBase, AssemblyBlock};
+use stillbase_session::assembly::AssemblyBlock;
 use stillbase_settings::number::ShortNumber;
 use stillbase_simulation::frame::{Frame, SharedBase};
 
@@ -112,10 +112,7 @@ impl BlockStages {
         let reach = others.iter().map(|(.., stage)| stage.linkage().reach()).fold(led.linkage().reach(), f64::max);
         let none = Arc::new(MeshSet::default());
         let block = shared.block().clone();
-        let body = match &block.scenario.base {
-            AssemblyBase::Free(base) => Some(body_of(base)),
-            AssemblyBase::Fixed => None,
-        };
+        let body = block.scenario.base.body().map(body_of);
         let mut all = Self { block, others, led: none.clone(), model: none, reach, body };
         all.join(led);
         Some(all)

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix6, Vector3};
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::base::{AssemblyBase, FreeBase, SpringBase, inertia_of, six_by_six};
 use super::tip::{TipChain, TipError, TipPath};
 use crate::Run;
 use crate::gentle_motion::gentle_motion;
 use crate::scenario::{Scenario, ScenarioError};
-use stillbase_mechanics::assembly::{Assembly, SpatialBase, builtin_assemblies};
+use stillbase_mechanics::assembly::{Assembly, Compliance, Momentum, SpatialBase, builtin_assemblies};
 use stillbase_mechanics::machine::{KeyPath, Machine, Payload};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::curves::Samples;
@@ -65,15 +66,6 @@ pub struct TipTask {
     pub blocks: Vec<usize>,
 }
 
-/// The base of an assembly.
-#[derive(Clone, Debug, PartialEq)]
-pub enum AssemblyBase {
-    /// It does not move.
-    Fixed,
-    /// It floats.
-    Free(SpatialBase),
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -98,12 +90,23 @@ struct File {
     duration: Option<f64>,
 }
 
-#[derive(Default, Deserialize)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum BaseKind {
     #[default]
     Fixed,
     Free,
+    Compliant,
+}
+
+impl BaseKind {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Free => "free",
+            Self::Compliant => "compliant",
+        }
+    }
 }
 
 #[derive(Default, Deserialize)]
@@ -115,6 +118,10 @@ struct BaseInFile {
     inertia: Option<Vec<f64>>,
     #[serde(default)]
     com: [f64; 3],
+    momentum: Option<[f64; 3]>,
+    angular_momentum: Option<[f64; 3]>,
+    stiffness: Option<Vec<f64>>,
+    damping: Option<Vec<f64>>,
 }
 
 /// Largest number of a base, in SI units.
@@ -226,7 +233,7 @@ impl Reading<'_> {
         let stem =
             std::path::Path::new(self.label).file_stem().map_or_else(|| self.label.into(), |s| s.to_string_lossy());
         let base = self.base(&file.base)?;
-        if base != AssemblyBase::Fixed && assembly.gravity != Vector3::zeros() {
+        if matches!(base, AssemblyBase::Free(_)) && assembly.gravity != Vector3::zeros() {
             let said =
                 "is free, but the assembly states gravity: want gravity = [0, 0, 0], as in orbit, or a fixed base";
             return Err(self.wrong(&["base", "kind"], said));
@@ -261,20 +268,23 @@ impl Reading<'_> {
     }
 
     fn base(&self, base: &BaseInFile) -> Result<AssemblyBase, ScenarioError> {
-        if matches!(base.kind, BaseKind::Fixed) {
+        let wrong = |key: &str, said: &str| self.wrong(&["base", key], said);
+        let BaseInFile { momentum, angular_momentum, stiffness, damping, .. } = base;
+        let is_of = |kind: BaseKind, key: &str, is_stated: bool| match is_stated && base.kind != kind {
+            true => Err(wrong(key, &format!("has no use there: want kind = \"{}\", or no {key}", kind.word()))),
+            false => Ok(()),
+        };
+        is_of(BaseKind::Free, "momentum", momentum.is_some())?;
+        is_of(BaseKind::Free, "angular_momentum", angular_momentum.is_some())?;
+        is_of(BaseKind::Compliant, "stiffness", stiffness.is_some())?;
+        is_of(BaseKind::Compliant, "damping", damping.is_some())?;
+        if base.kind == BaseKind::Fixed {
             return Ok(AssemblyBase::Fixed);
         }
-        let wrong = |key: &str, said: &str| self.wrong(&["base", key], said);
         let mass = base.mass.filter(|mass| *mass > 0.0 && *mass <= MAX_NUMBER);
-        let mass = mass.ok_or_else(|| wrong("mass", "want the mass of the free base above 0, kg"))?;
-        let nine = |x: &[f64]| Matrix3::from_row_slice(x);
-        let inertia = base.inertia.as_deref().and_then(|numbers| match numbers {
-            [x, y, z] => Some(Matrix3::from_diagonal(&Vector3::new(*x, *y, *z))),
-            numbers if numbers.len() == 9 => Some(nine(numbers)),
-            _ => None,
-        });
-        let want =
-            "want [x, y, z] about the centre of mass of the free base, kg m², or nine numbers row by row, symmetric";
+        let mass = mass.ok_or_else(|| wrong("mass", "want the mass of the base above 0, kg"))?;
+        let inertia = base.inertia.as_deref().and_then(inertia_of);
+        let want = "want [x, y, z] about the centre of mass of the base, kg m², or nine numbers row by row, symmetric";
         let inertia = inertia.filter(|inertia| inertia.iter().all(|x| x.abs() <= MAX_NUMBER));
         let inertia = inertia.ok_or_else(|| wrong("inertia", want))?;
         let asymmetry = (inertia - inertia.transpose()).amax();
@@ -295,7 +305,32 @@ impl Reading<'_> {
         if !base.com.iter().all(|x| x.abs() <= 1e6) {
             return Err(wrong("com", "want three numbers, m"));
         }
-        Ok(AssemblyBase::Free(SpatialBase { mass, com: base.com.into(), inertia }))
+        let body = SpatialBase { mass, com: base.com.into(), inertia };
+        if base.kind == BaseKind::Free {
+            let kept = |key: &str, stated: &Option<[f64; 3]>, unit: &str| {
+                let numbers = stated.unwrap_or_default();
+                match numbers.iter().all(|x| x.abs() <= MAX_NUMBER) {
+                    true => Ok(Vector3::from(numbers)),
+                    false => Err(wrong(key, &format!("is {numbers:?}: want three numbers, {unit}"))),
+                }
+            };
+            let linear = kept("momentum", momentum, "kg m/s")?;
+            let angular = kept("angular_momentum", angular_momentum, "kg m²/s, about the common centre of mass")?;
+            return Ok(AssemblyBase::Free(FreeBase { body, kept: Momentum { linear, angular } }));
+        }
+        let six = |key: &str, stated: &Option<Vec<f64>>, unit: &str| {
+            let numbers = stated.as_deref().and_then(six_by_six);
+            numbers.filter(|six| six.iter().all(|x| x.abs() <= MAX_NUMBER)).ok_or_else(|| {
+                wrong(key, &format!("want six numbers, along and about x, y, z, {unit}, or all 36 row by row"))
+            })
+        };
+        let stiffness = six("stiffness", stiffness, "N/m and N m/rad")?;
+        let damping = match damping {
+            Some(_) => six("damping", damping, "N s/m and N m s")?,
+            None => Matrix6::zeros(),
+        };
+        Compliance::new(&stiffness, &damping).map_err(|why| self.wrong(&["base"], why.to_string()))?;
+        Ok(AssemblyBase::Compliant(Box::new(SpringBase { body, stiffness, damping })))
     }
 
     /// Returns the task of a block, and its other settings, as a scenario of its machine with what it carries as payload.
@@ -375,6 +410,32 @@ pub fn changed_keys(stated: Table, wanted: &Table) -> Table {
     all
 }
 
+/// Returns a base as its file states it; `None` for one that does not move.
+fn base_to_table(base: &AssemblyBase) -> Option<Table> {
+    let list = |numbers: &[f64]| Value::Array(numbers.iter().map(|x| Value::Float(*x)).collect());
+    let SpatialBase { mass, com, inertia } = base.body()?;
+    let rows = |matrix: &Matrix6<f64>| list(matrix.transpose().as_slice());
+    let own = match base {
+        AssemblyBase::Fixed => return None,
+        AssemblyBase::Free(FreeBase { kept: Momentum { linear, angular }, .. }) => [
+            ("kind", Value::String("free".into())),
+            ("momentum", list(linear.as_slice())),
+            ("angular_momentum", list(angular.as_slice())),
+        ],
+        AssemblyBase::Compliant(of) => [
+            ("kind", Value::String("compliant".into())),
+            ("stiffness", rows(&of.stiffness)),
+            ("damping", rows(&of.damping)),
+        ],
+    };
+    let body = [
+        ("mass", Value::Float(*mass)),
+        ("com", list(com.as_slice())),
+        ("inertia", list(inertia.transpose().as_slice())),
+    ];
+    Some(own.into_iter().chain(body).map(|(key, value)| (key.to_owned(), value)).collect())
+}
+
 /// Returns where a block is at the start, rad; of a block without a task, nowhere.
 fn rest_of(task: &Option<BlockTask>) -> DriveAngles {
     let run = task.as_ref().and_then(|task| Run::or_waiting(&task.scenario).ok());
@@ -427,20 +488,7 @@ impl AssemblyScenario {
         let is_led = |i: usize| self.tip.as_ref().is_some_and(|tip| tip.blocks.contains(&i));
         file.insert("step".into(), Value::Float(self.step));
         file.extend(self.duration.map(|duration| ("duration".to_owned(), Value::Float(duration))));
-        if let AssemblyBase::Free(SpatialBase { mass, com, inertia }) = &self.base {
-            let rows = inertia.transpose();
-            let list = |numbers: &[f64]| Value::Array(numbers.iter().map(|x| Value::Float(*x)).collect());
-            let base = [
-                ("kind", Value::String("free".into())),
-                ("mass", Value::Float(*mass)),
-                ("com", list(com.as_slice())),
-                ("inertia", list(rows.as_slice())),
-            ];
-            file.insert(
-                "base".into(),
-                Value::Table(base.map(|(key, value)| (key.to_owned(), value)).into_iter().collect()),
-            );
-        }
+        file.extend(base_to_table(&self.base).map(|base| ("base".to_owned(), Value::Table(base))));
         let (mut tasks, mut others) = (Table::new(), Table::new());
         for (i, (block, task)) in self.assembly.blocks().iter().zip(&self.tasks).enumerate() {
             let mut own: Table = task.scenario.to_toml().parse().expect("a scenario is written as TOML");

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use stillbase_mechanics::assembly::{Assembly, Attitude, BlockState, MAX_BLOCKS, SpatialLoads};
+use super::base::MovingSupport;
+use stillbase_mechanics::assembly::{Assembly, Attitude, BlockLoads, BlockState, MAX_BLOCKS, SpatialLoads};
 use stillbase_mechanics::planar::PerDrive;
 use stillbase_settings::number::fixed_or_finer;
 use stillbase_simulation::frame::{REACTIONLESS_SHARE, SharedBase};
@@ -20,7 +21,7 @@ pub struct AssemblyFrame {
     pub torques: [PerDrive; MAX_BLOCKS],
     /// End effectors, m, in axes of the base.
     pub tips: [Vector3<f64>; MAX_BLOCKS],
-    /// What the blocks put on a base at rest.
+    /// What the blocks put on their base, as it moves.
     pub loads: SpatialLoads,
     /// Attitude of the base; level if it is fixed.
     pub attitude: Attitude,
@@ -31,16 +32,20 @@ pub struct AssemblyFrame {
 }
 
 impl AssemblyFrame {
-    /// Returns the frame of a step and a time, s, with the states of all blocks, and the attitude, the origin, m, and the
-    /// rate, rad/s, of the base.
+    /// Returns the frame of a step and a time, s, with the states of all blocks on a base.
     pub(super) fn of(
         assembly: &Assembly,
         (step, time): (u64, f64),
         states: [BlockState; MAX_BLOCKS],
-        (attitude, origin, rate): (Attitude, Vector3<f64>, Vector3<f64>),
+        base: &MovingSupport,
     ) -> Self {
         let mut torques = [PerDrive::zeros(0); MAX_BLOCKS];
-        let loads = assembly.loads(&states, |i, of| torques[i] = of.torque);
+        let mut see = |i: usize, of: &BlockLoads| torques[i] = of.torque;
+        let (loads, rate) = match base.motion(assembly, &states) {
+            Some((moving, gravity)) => (assembly.loads_on(&moving, &gravity, &states, see), moving.rate),
+            None => (assembly.loads(&states, &mut see), Vector3::zeros()),
+        };
+        let (attitude, origin) = base.place();
         let tips = assembly.end_effectors(&states);
         Self { step, time, torques, tips, loads, states, attitude, origin, rate }
     }

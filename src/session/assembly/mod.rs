@@ -8,6 +8,7 @@
 //! the model, are left to scenarios of one machine.
 
 mod against;
+mod base;
 mod block;
 mod catalog;
 mod file;
@@ -18,7 +19,8 @@ mod tip;
 
 pub use block::AssemblyBlock;
 pub use catalog::{builtin_assembly_scenarios, builtin_scenario_text};
-pub use file::{AssemblyBase, AssemblyScenario, BlockTask, TipTask, changed_keys};
+pub use base::{AssemblyBase, FreeBase, SpringBase};
+pub use file::{AssemblyScenario, BlockTask, TipTask, changed_keys};
 pub use frame::{AssemblyFrame, AssemblyVerdict};
 pub use shared::SharedRun;
 pub use tip::TipPath;

@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
-
 use super::against::against;
 use super::block::AssemblyBlock;
-use super::file::AssemblyBase;
+use super::base::MovingSupport;
 use super::frame::{AssemblyFrame, AssemblyVerdict};
 use crate::changes::in_order;
 use crate::edit::{Edit, TimedEdit};
 use crate::refusal::Refusal;
 use crate::run::Run;
-use stillbase_mechanics::assembly::{Attitude, BlockState, MAX_BLOCKS};
+use stillbase_mechanics::assembly::{BlockState, MAX_BLOCKS};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
 use stillbase_simulation::frame::{Frame, Peaks, SharedBase};
@@ -26,8 +24,7 @@ pub struct SharedRun {
     now: AssemblyFrame,
     /// Peaks of |τ| of the motors of each block, N m.
     peaks: [PerDrive; MAX_BLOCKS],
-    /// Centre of mass of everything in space, m: it stays where it is if the base floats.
-    com: Vector3<f64>,
+    base: MovingSupport,
     verdict: AssemblyVerdict,
     /// The block whose b follows that of the block that is led, with `c` and `f` of b′ = c + f b.
     bound: Option<(usize, [f64; 2])>,
@@ -137,18 +134,14 @@ impl SharedRun {
         for (i, other) in others.iter().enumerate() {
             states[i] = other.as_ref().map_or(states[i], |other| state_of(&other.frame));
         }
-        let com = match &scenario.base {
-            AssemblyBase::Free(base) => scenario.assembly.base_motion(base, &states, &Vector3::zeros()).com,
-            AssemblyBase::Fixed => Vector3::zeros(),
-        };
+        let base = MovingSupport::of(&scenario.base, &scenario.assembly, &states, scenario.step)?;
         let drives = |i: usize| scenario.assembly.blocks().get(i).map_or(0, |block| block.machine.drives());
-        let place = (Attitude::level(), Vector3::zeros(), Vector3::zeros());
         let mut shared = Self {
-            now: AssemblyFrame::of(&scenario.assembly, (led.step, led.time), states, place),
+            now: AssemblyFrame::of(&scenario.assembly, (led.step, led.time), states, &base),
             peaks: std::array::from_fn(|i| PerDrive::zeros(drives(i))),
             block: block.clone(),
             others,
-            com,
+            base,
             verdict: AssemblyVerdict::default(),
             bound: follower.map(|(i, factor)| (i, [b_of(i) - factor * led.b_reference, factor])),
         };
@@ -212,10 +205,10 @@ impl SharedRun {
         let before = self.now.states;
         self.others.iter_mut().flatten().for_each(OtherBlock::advance);
         let AssemblyBlock { scenario, .. } = &*self.block;
-        if let AssemblyBase::Free(base) = &scenario.base {
+        if scenario.base.moves() {
             let after = self.states(led);
-            let (assembly, h, count) = (&scenario.assembly, scenario.step, scenario.assembly.blocks().len());
-            self.now.attitude = self.now.attitude.after(h, |share, _| {
+            let (h, count) = (scenario.step, scenario.assembly.blocks().len());
+            self.base.advance(&scenario.assembly, (h, led.time), |share| {
                 let mut states = before;
                 for i in 0..count {
                     states[i] = match share {
@@ -224,7 +217,7 @@ impl SharedRun {
                         share => between(&before[i], &after[i], h, share),
                     };
                 }
-                assembly.base_motion(base, &states, &Vector3::zeros()).rate
+                states
             });
         }
         // Edits that are due change accelerations from here on.
@@ -243,17 +236,9 @@ impl SharedRun {
 
     /// Takes over the state of the block that is led at the present step: after a step, or after an edit.
     pub fn see(&mut self, led: &Frame) {
-        let (states, attitude) = (self.states(led), self.now.attitude);
+        let states = self.states(led);
         let AssemblyBlock { scenario, .. } = &*self.block;
-        let (origin, rate) = match &scenario.base {
-            AssemblyBase::Fixed => (Vector3::zeros(), Vector3::zeros()),
-            AssemblyBase::Free(base) => {
-                let motion = scenario.assembly.base_motion(base, &states, &Vector3::zeros());
-                (self.com - attitude.0 * motion.com, motion.rate)
-            }
-        };
-        let at = (led.step, led.time);
-        self.now = AssemblyFrame::of(&scenario.assembly, at, states, (attitude, origin, rate));
+        self.now = AssemblyFrame::of(&scenario.assembly, (led.step, led.time), states, &self.base);
         self.verdict.see(&scenario.assembly, &self.now);
         for (peaks, torques) in self.peaks.iter_mut().zip(&self.now.torques) {
             (0..peaks.len()).for_each(|k| peaks[k] = peaks[k].max(torques[k].abs()));
@@ -265,9 +250,9 @@ impl SharedRun {
     pub fn in_space(&self, block: usize, own: Frame) -> Frame {
         let AssemblyFrame { loads, attitude, origin, rate, .. } = self.now;
         let AssemblyVerdict { peaks, scale, turn, shift, .. } = self.verdict;
-        let floats = self.block.scenario.base != AssemblyBase::Fixed;
+        let moves = self.block.scenario.base.moves();
         let tip = self.now.in_space(&self.now.tips[block]);
-        let shared = SharedBase { loads, attitude, origin, rate, floats, peaks, scale, turn, shift, tip };
+        let shared = SharedBase { loads, attitude, origin, rate, moves, peaks, scale, turn, shift, tip };
         let peaks = Peaks { torque: self.peaks[block], ..own.peaks };
         Frame { torque: self.now.torques[block], peaks, shared: Some(shared), ..own }
     }
