@@ -273,6 +273,7 @@ pub const ACTIONS: &[Action] = actions![
         turn(s, v, -B_STEP_RAD)
     };
     Task, "Turn the task along with b" = "rotate points", [], "left panel" turns TurnTask;
+    Task, "Lead the end effector in space, with what carries it" = "spatial target chain", [], "left panel" turns InSpace;
     Task, "Draw a path with the pointer" = "curve freehand sketch trajectory", [on(PLAIN, Key::P)], "tool bar" turns Drawing;
     Task, "Push the end effector with the pointer" = "force disturb poke load kick", [on(PLAIN, Key::U)], "tool bar" turns Pushing;
 

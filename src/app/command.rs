@@ -190,6 +190,8 @@ pub enum Switch {
     Exaggeration,
     /// Let b leave the interval that is feasible for the points of the task; the points then rotate with b.
     TurnTask,
+    /// Dragging the target moves what carries the block, too.
+    InSpace,
     /// Shade the workspace by a measure of dexterity.
     Dexterity,
     /// The pointer drags objects: it neither draws nor pushes.

@@ -151,7 +151,11 @@ impl<'a> ScenePointer<'a> {
         let (session, pointer) = (self.session, self.spot.pointer(pos));
         let snaps = self.ui.input(|i| i.modifiers.ctrl || i.modifiers.command);
         let pick = Pick { grip: pick.grip.map(|grip| grip.snapping(snaps)), ..pick };
-        let aim = self.views.aim(self.view, &pick, self.shown, &pointer, session.b_aim())?;
+        let in_space = view_state.in_space && pick.handle == Handle::Target && leads_in_space(session);
+        let aim = match in_space && self.view == ViewKind::Space {
+            true => self.views.aim_in_space(self.shown, &pointer)?,
+            false => self.views.aim(self.view, &pick, self.shown, &pointer, session.b_aim())?,
+        };
         let aim = if snaps { aim.snapped() } else { aim };
         match aim {
             DragAction::Target([x, y]) if self.view.shows_machine() => {
@@ -262,6 +266,7 @@ fn edit_of(aim: DragAction, session: &Session, view_state: &ViewState) -> Option
     let machine = &session.scenario().machine;
     Some(match aim {
         DragAction::Target([x, y]) => Edit::DragTarget { x, y },
+        DragAction::InSpace(at) => session.edit_in_space(at)?,
         DragAction::Angles([a1, a2]) => Edit::DragAngles { a1, a2 },
         DragAction::Pull { link, along, at: [x, y] } => {
             let link = machine.links().get(link)?.name.clone();
@@ -285,6 +290,12 @@ fn edit_of(aim: DragAction, session: &Session, view_state: &ViewState) -> Option
         DragAction::Payload(offset) => Edit::set("plant.payload.offset", offset.to_vec()),
         DragAction::Waypoint(i, [x, y]) => Edit::of("task", session.scenario().task.moving(i, Vector::new(x, y))?),
     })
+}
+
+/// Returns whether the led block sits on another one, which can move with it.
+pub fn leads_in_space(session: &Session) -> bool {
+    let block = session.scenario().assembly.as_ref();
+    block.is_some_and(|own| own.scenario.assembly.blocks()[own.block].mount.on.is_some())
 }
 
 fn cursor(handle: Handle, held: bool) -> CursorIcon {

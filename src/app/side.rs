@@ -13,6 +13,7 @@ use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::facts::ScenarioFacts;
 use super::notation;
+use super::scene_pointer::leads_in_space;
 use super::sketching::waits;
 use super::theme::{bold, colour, plain};
 use super::widgets::{NumberRow, name, note, section, send, unit};
@@ -99,7 +100,10 @@ fn of_machine(
 ) {
     place::place_of_thing(ui, Handle::Ring, p, |ui| pose_constant(ui, session, facts, view_state, commands));
     if session.run().pose_space().is_ok() {
-        place::place_of_thing(ui, Handle::Target, p, |ui| target(ui, session, p, commands));
+        place::place_of_thing(ui, Handle::Target, p, |ui| {
+            target(ui, session, p, commands);
+            in_space(ui, session, view_state, p, commands);
+        });
     }
     if session.scenario().assembly.is_none() {
         place::place_of_thing(ui, Handle::Joint(0), p, |ui| limits(ui, session, p, commands));
@@ -286,6 +290,42 @@ fn target(ui: &mut Ui, session: &Session, p: &Palette, commands: &mut Vec<Comman
             }
             let [x, y] = place;
             send(commands, &changed, || Edit::DragTarget { x, y });
+        });
+    });
+}
+
+/// Draws, for a block that another one carries, whether its target is dragged in space, and its place there.
+fn in_space(ui: &mut Ui, session: &Session, view_state: &ViewState, p: &Palette, commands: &mut Vec<Command>) {
+    if !leads_in_space(session) {
+        return;
+    }
+    let mut is_on = view_state.in_space;
+    let tip = "Dragging the target in 3D moves it in the plane of the screen, and the blocks that carry this one go along, \
+               each with its b as it is; the sum of the squared rates of all drives is least";
+    if ui.checkbox(&mut is_on, "in space, with what carries it").on_hover_text(tip).changed() {
+        commands.push(ViewChange::Switch(Switch::InSpace, is_on).into());
+    }
+    let Some(mut place) = session.tip_on_base().filter(|_| is_on) else { return };
+    ui.horizontal(|ui| {
+        let tip = "Where the end effector is in axes of the base; typed or dragged, all blocks that carry it move";
+        ui.label("tip").on_hover_text(tip);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            unit(ui, p, "m");
+            let mut changed = Vec::new();
+            for (i, label) in [(2, "tip z"), (1, "tip y"), (0, "tip x")] {
+                let range = POINT_RANGE.low()..=POINT_RANGE.high();
+                let row = NumberRow { label, unit: "m", tip, decimals: 3, speed: 0.002, slide: range.clone(), range };
+                changed.push(row.number(ui, &mut place[i]));
+            }
+            let edit = changed.iter().any(egui::Response::changed).then(|| session.edit_on_base(place)).flatten();
+            // Of a place to which no way leads there is no edit, but the gesture ends all the same.
+            match edit {
+                Some(edit) => send(commands, &changed, || edit),
+                None if changed.iter().any(|r| r.drag_stopped() || r.lost_focus()) => {
+                    commands.push(SessionCommand::EndGesture.into());
+                }
+                None => {}
+            }
         });
     });
 }

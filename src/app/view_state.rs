@@ -101,6 +101,8 @@ pub struct ViewState {
     pub drives: [usize; 3],
     /// Whether b may leave the interval that is feasible for the points of the task; the points then rotate with b.
     pub turn_task: bool,
+    /// Whether dragging the target of a carried block moves in space, and what carries it goes along.
+    pub in_space: bool,
     /// Whether the drawn motion of the base is enlarged.
     pub exaggerates_base: bool,
     /// Size of window and scene on display.
@@ -142,6 +144,7 @@ impl ViewState {
             snapshots: false,
             drives: [0, 1, 2],
             turn_task: false,
+            in_space: false,
             exaggerates_base: true,
             displayed: DisplaySize::default(),
             ghost: None,

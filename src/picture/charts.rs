@@ -18,7 +18,7 @@ use super::scene::Rgba;
 use super::scene::palette::{Palette, mix};
 use stillbase_mechanics::machine::Inertia;
 use stillbase_planning::pose_space::constant_inertia;
-use stillbase_session::assembly::{AssemblyBase, AssemblyScenario};
+use stillbase_session::assembly::AssemblyScenario;
 use stillbase_session::scenario::Scenario;
 use stillbase_simulation::frame::Peaks;
 use stillbase_simulation::signals::Signal;

@@ -24,6 +24,7 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
         Edit::Sketch(step) => scenario = scenario.sketched(step)?,
         Edit::PoseB { .. }
         | Edit::DragTarget { .. }
+        | Edit::DragBlocks { .. }
         | Edit::DragAngles { .. }
         | Edit::PullLink { .. }
         | Edit::SlideB { .. } => {}

@@ -1,5 +1,7 @@
 //! [`Edit`]: every change that the user can make, as data. Scenario and edits determine a session completely.
 
+use std::collections::BTreeMap;
+
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +31,12 @@ pub enum Edit {
         x: f64,
         /// m.
         y: f64,
+    },
+    /// Drags the end effector of a block of an assembly in space: each block of its chain has its target there, as
+    /// [`DragTarget`](Self::DragTarget), m, in its own plane.
+    DragBlocks {
+        /// Targets by the names of the blocks, m.
+        targets: BTreeMap<String, [f64; 2]>,
     },
     /// Drags the relative joint angles to (a₁, a₂), rad, by turning a link; b is held.
     DragAngles {
@@ -266,6 +274,9 @@ impl Edit {
     pub fn check(&self) -> Result<(), RangeCheck> {
         let found: Vec<RangeCheck> = match self {
             Self::DragTarget { x, y } => vec![POINT_RANGE.check("x", *x), POINT_RANGE.check("y", *y)],
+            Self::DragBlocks { targets } => {
+                targets.values().flatten().map(|x| POINT_RANGE.check("targets", *x)).collect()
+            }
             Self::DragAngles { a1, a2 } => vec![ANGLE.check("a1", *a1), ANGLE.check("a2", *a2)],
             Self::PullLink { along, x, y, .. } => {
                 vec![POINT_RANGE.check("along", *along), POINT_RANGE.check("x", *x), POINT_RANGE.check("y", *y)]
@@ -305,7 +316,7 @@ impl Edit {
     /// Returns the name of the part of the scenario that the edit changes, for messages.
     pub(super) fn name(&self) -> &str {
         match self {
-            Self::DragTarget { .. } => "target",
+            Self::DragTarget { .. } | Self::DragBlocks { .. } => "target",
             Self::DragAngles { .. } => "angles",
             Self::PullLink { .. } => "link",
             Self::SlideB { .. } | Self::PoseB { .. } => "b",
@@ -321,7 +332,14 @@ impl Edit {
 
     /// Returns whether the edit drags the machine: by the target, the angles, a link, or the slider of b.
     pub fn is_drag(&self) -> bool {
-        matches!(self, Self::DragTarget { .. } | Self::DragAngles { .. } | Self::PullLink { .. } | Self::SlideB { .. })
+        matches!(
+            self,
+            Self::DragTarget { .. }
+                | Self::DragBlocks { .. }
+                | Self::DragAngles { .. }
+                | Self::PullLink { .. }
+                | Self::SlideB { .. }
+        )
     }
 
     /// Returns whether the edit changes joint limits.
@@ -361,6 +379,10 @@ impl Edit {
     pub(super) fn title_after(&self, inverse: Option<&Self>) -> String {
         match self {
             Self::DragTarget { x, y } => format!("drag target to {x:.3}, {y:.3} m"),
+            Self::DragBlocks { targets } => {
+                let names: Vec<&str> = targets.keys().map(String::as_str).collect();
+                format!("drag in space with {}", names.join(", "))
+            }
             Self::DragAngles { a1, a2 } => {
                 format!("turn links to a₁ {:.1}°, a₂ {:.1}°", a1.to_degrees(), a2.to_degrees())
             }

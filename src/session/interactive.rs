@@ -16,6 +16,8 @@ mod passing;
 
 use std::sync::Arc;
 
+use nalgebra::Vector3;
+
 use change::HistoryStep;
 
 use super::document::Document;
@@ -147,6 +149,27 @@ impl Session {
             stillbase_simulation::Guide::Follow(follower) if self.is_at_end() => follower.b_aim(),
             _ => self.frame().b_reference,
         }
+    }
+
+    /// Returns the edit that sends the end effector of a carried block to a point, m, in the axes of the block, its height
+    /// from that of the end effector; what carries it goes along. `None` if there is no way.
+    pub fn edit_in_space(&self, [x, y, height]: [f64; 3]) -> Option<Edit> {
+        let shared = self.run.shared()?;
+        let own = &shared.block().scenario.assembly.blocks()[shared.block().block];
+        let point = Vector3::new(x, y, own.platform_height() + height);
+        Some(Edit::DragBlocks { targets: shared.targets_in_space(&self.run, &point)? })
+    }
+
+    /// Returns where the end effector of the led block is, m, in axes of the base of its assembly.
+    pub fn tip_on_base(&self) -> Option<[f64; 3]> {
+        let shared = self.run.shared()?;
+        Some(shared.now().tips[shared.block().block].into())
+    }
+
+    /// Returns the edit that sends the end effector of a carried block to a place, m, in axes of the base.
+    pub fn edit_on_base(&self, place: [f64; 3]) -> Option<Edit> {
+        let shared = self.run.shared()?;
+        Some(Edit::DragBlocks { targets: shared.targets_on_base(&self.run, &place.into())? })
     }
 
     /// Returns the edit for a new b, rad. While the newest frame plays, the machine moves to the plane b; else it is put

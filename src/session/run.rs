@@ -9,6 +9,8 @@ use super::refusal::Refusal;
 use crate::assembly::SharedRun;
 use crate::changes::{after_start_edit, changed, checked};
 use crate::scenario::{MAX_STEPS, Scenario, UnfinishedDrawing};
+use crate::whole_frame::WholeFrame;
+use stillbase_mechanics::assembly::Block;
 use stillbase_mechanics::machine::{Chain, Inertia};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
 use stillbase_planning::Motion;
@@ -316,6 +318,17 @@ impl Run {
                 follower.set_target(if frame.floats { frame.in_base(at) } else { at });
                 self.simulation.set_guide(Guide::Follow(follower));
             }
+            Edit::DragBlocks { targets } => {
+                let Some(shared) = &self.shared else {
+                    return Err(Refusal::Task("drag-blocks leads blocks of an assembly: want drag-target".into()));
+                };
+                shared.check_targets(targets)?;
+                if let Some([x, y]) = targets.get(shared.block().name()) {
+                    let mut follower = self.follower()?;
+                    follower.set_target(Vector::new(*x, *y));
+                    self.simulation.set_guide(Guide::Follow(follower));
+                }
+            }
             Edit::DragAngles { a1, a2 } => {
                 let mut follower = self.follower()?;
                 if follower.aim().len() != 2 {
@@ -455,6 +468,16 @@ impl Run {
         };
         Some(match edit {
             Edit::DragTarget { .. } => Edit::DragTarget { x: frame.target.at.re, y: frame.target.at.im },
+            Edit::DragBlocks { targets } => {
+                let shared = self.shared.as_ref()?;
+                let blocks = shared.block().scenario.assembly.blocks();
+                let whole = WholeFrame::of(self, &frame);
+                let present = |(i, block): (usize, &Block)| {
+                    let at = whole.frame(i).target.at;
+                    targets.contains_key(&block.name).then(|| (block.name.clone(), [at.re, at.im]))
+                };
+                Edit::DragBlocks { targets: blocks.iter().enumerate().filter_map(present).collect() }
+            }
             Edit::DragAngles { .. } => {
                 let planes = self.planes()?;
                 let [a1, a2] = match self.simulation.guide() {

@@ -9,7 +9,7 @@ use stillbase::mechanics::assembly::{
     Assembly, Attitude, BaseState, BlockState, Compliance, Momentum, MovingBase, SpatialBase, builtin_assemblies,
 };
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
-use stillbase::session::assembly::{AssemblyBase, AssemblyFrame, AssemblyScenario};
+use stillbase::session::assembly::{AssemblyBase, AssemblyFrame, AssemblyScenario, FreeBase};
 use stillbase::session::scenario::ScenarioError;
 
 use super::python::answers;
@@ -321,7 +321,7 @@ fn silent_runs_are_silent_in_mujoco() {
         assert_eq!(peak < 1e-10 * scale, is_silent, "{name}: {peak} of {scale}");
     }
     let (run, frames) = run("arm-against-arm");
-    let AssemblyBase::Free(base) = &run.base else { panic!("it floats") };
+    let AssemblyBase::Free(FreeBase { body: base, .. }) = &run.base else { panic!("it floats") };
     let mut asked = Asked::of(&run.assembly, Some(base));
     let frames: Vec<&AssemblyFrame> = frames.iter().step_by(10).collect();
     for AssemblyFrame { states, attitude, origin, rate, .. } in &frames {

@@ -2,7 +2,6 @@
 
 use stillbase_mechanics::assembly::Assembly;
 use stillbase_mechanics::counterweights::CounterweightSpec;
-use stillbase_session::assembly::AssemblyRun;
 use stillbase_session::scenario::DesignBrief;
 use stillbase_settings::number::{fixed, fixed_or_finer, significant};
 use stillbase_study::assembly_weights::{AssemblyWeightReport, BlockWeightReport, balance_assembly};
@@ -70,16 +69,14 @@ fn greatest_accelerations(task: &str, assembly: &Assembly) -> Result<Vec<f64>, F
         let has: Vec<String> = drives(assembly).into_iter().map(|(name, n)| format!("{name} ({n} drives)")).collect();
         return Err(refused(format!("its assembly has other blocks: want {}", has.join(", "))));
     }
-    let run = AssemblyRun::new(&scenario).map_err(|(i, why)| {
-        Failure::from(why).with_context(format!("--task {task}: block {}", assembly.blocks()[i].name))
-    })?;
     let mut greatest: Vec<Vec<f64>> = assembly.blocks().iter().map(|own| vec![0.0; own.machine.drives()]).collect();
-    run.run(|frame| {
+    let run = scenario.run(|frame| {
         for (most, state) in greatest.iter_mut().zip(&frame.states) {
             most.iter_mut().zip(state.qdd.iter()).for_each(|(most, x)| *most = most.max(x.abs()));
         }
         goes_on()
     });
+    run.map_err(|why| Failure::from(why).with_context(format!("--task {task}")))?;
     Ok(greatest.concat())
 }
 

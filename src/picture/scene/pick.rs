@@ -98,6 +98,7 @@ impl DragAction {
         let both = |at: [f64; 2], step| at.map(|x| round(x, step));
         match self {
             Self::Target(at) => Self::Target(both(at, POSITION_GRID_M)),
+            Self::InSpace(at) => Self::InSpace(at.map(|x| round(x, POSITION_GRID_M))),
             Self::Waypoint(i, at) => Self::Waypoint(i, both(at, POSITION_GRID_M)),
             Self::Payload(offset) => Self::Payload(both(offset, POSITION_GRID_M)),
             Self::Limit { angle, end, mut ends } => {
@@ -132,6 +133,8 @@ impl Pick {
 pub enum DragAction {
     /// Target position of the end effector, m.
     Target([f64; 2]),
+    /// Target position of the end effector of a block in space, m, in the axes of the block.
+    InSpace([f64; 3]),
     /// Pose constant, rad.
     B(f64),
     /// Position, m, of a point of the path; its index from A.

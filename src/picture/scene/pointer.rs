@@ -24,6 +24,14 @@ impl Pointer {
         self.camera.ray([0, 1].map(|i| self.at[i] / self.size[i].max(1.0)), self.aspect())
     }
 
+    /// Returns the point under the pointer in the plane through a point, m, that faces the eye.
+    pub fn beside(&self, point: [f64; 3]) -> Option<[f64; 3]> {
+        let (ray, facing) = (self.ray()?, self.camera.eye_direction().map(f64::from));
+        let way = [0, 1, 2].map(|i| point[i] - ray.from[i]);
+        let t = dot(way, facing) / dot(ray.along, facing);
+        (t.is_finite() && t > 0.0).then(|| [0, 1, 2].map(|i| ray.from[i] + t * ray.along[i]))
+    }
+
     /// Projects a point, m, to the picture, px; `None` behind the eye.
     pub fn project(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         let place = self.camera.project(point, self.aspect())?;

@@ -422,6 +422,14 @@ impl Views {
         (pointer.distance(at)? < 1.5 * PICK_RADIUS).then_some(Pick::of(Handle::EndEffector, at))
     }
 
+    /// Returns where a drag of the target in space asks the end effector to be, in the axes of its block: beside it, in the
+    /// plane that faces the eye.
+    pub fn aim_in_space(&self, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<DragAction> {
+        let [x, y, z] = pointer.beside(self.stage.handle(Handle::Target, shown)?)?;
+        // The handle lies above the end effector.
+        Some(DragAction::InSpace([x, y, z - self.stage.handle_height()]))
+    }
+
     /// Picks the target, if the pointer is on a link or within `near` px of the target.
     #[doc(hidden)]
     pub fn pick_arm(&self, shown: &DrawnFrame<'_>, pointer: &Pointer, near: f64) -> Option<Pick> {

@@ -87,6 +87,34 @@ impl AssemblyScenario {
     }
 }
 
+impl AssemblyScenario {
+    /// Gives each block its part of the drags in space of one that was led.
+    pub(super) fn share_drags(&mut self, led: usize) {
+        let names: Vec<String> = self.assembly.blocks().iter().map(|block| block.name.clone()).collect();
+        let all = std::mem::take(&mut self.tasks[led].scenario.edits);
+        let mut kept = Vec::with_capacity(all.len());
+        for timed in all {
+            let Edit::DragBlocks { targets } = &timed.edit else {
+                kept.push(timed);
+                continue;
+            };
+            for (i, name) in names.iter().enumerate() {
+                let Some([x, y]) = targets.get(name) else { continue };
+                let own = TimedEdit { step: timed.step, edit: Edit::DragTarget { x: *x, y: *y } };
+                match i == led {
+                    true => kept.push(own),
+                    false => self.tasks[i].scenario.edits.push(own),
+                }
+            }
+        }
+        self.tasks[led].scenario.edits = kept;
+        for task in &mut self.tasks {
+            task.scenario.edits.sort_by_key(|timed| timed.step);
+            task.rests &= task.scenario.edits.is_empty();
+        }
+    }
+}
+
 /// Returns the edit of a bound block for one of the block that is led: `relation` + `factor` b in place of b.
 pub(super) fn against(edit: &Edit, relation: f64, factor: f64) -> Option<Edit> {
     match edit {

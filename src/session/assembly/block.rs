@@ -49,6 +49,7 @@ impl AssemblyBlock {
         let task = &mut whole.tasks[self.block];
         task.rests &= scenario.task == task.scenario.task && scenario.edits.is_empty();
         task.scenario = scenario;
+        whole.share_drags(self.block);
         (whole.name, whole.title, whole.summary) = (own.name.clone(), own.title.clone(), own.summary.clone());
         (whole.duration, whole.lead) = (own.duration, self.block);
         whole.follow(self.block);

@@ -1,6 +1,9 @@
 //! [`SharedRun`]: the blocks beside the one that a run leads, and the base that all of them share.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+use nalgebra::{DVector, Vector3};
 
 use super::against::against;
 use super::block::AssemblyBlock;
@@ -12,6 +15,8 @@ use crate::refusal::Refusal;
 use crate::run::Run;
 use stillbase_mechanics::assembly::{BlockState, MAX_BLOCKS};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::platform::{ChainBlock, FreedomChoice, PlatformChain, follow};
+use stillbase_settings::range::quote_clipped;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
 use stillbase_simulation::frame::{Frame, Peaks, SharedBase};
 
@@ -117,6 +122,22 @@ fn between(from: &BlockState, to: &BlockState, h: f64, share: f64) -> BlockState
     }
 }
 
+/// Length of the steps by which a way in space is followed, m, and their greatest number.
+const STRIDE: f64 = 0.01;
+const MAX_STRIDES: f64 = 200.0;
+
+/// Returns the angles with which a chain comes along a way as far as it can, with least rates.
+fn nearest_on(chain: &PlatformChain, from: DVector<f64>, way: &[Vector3<f64>]) -> DVector<f64> {
+    let mut last = from;
+    for pair in way.windows(2) {
+        match follow(chain, FreedomChoice::LeastRates, last.clone(), pair) {
+            Ok(mut all) => last = all.pop().unwrap_or(last),
+            Err(_) => break,
+        }
+    }
+    last
+}
+
 impl SharedRun {
     /// Returns the other blocks at their start, while the block that is led is in the state of a frame.
     ///
@@ -175,11 +196,75 @@ impl SharedRun {
         &self.verdict
     }
 
+    /// Checks that targets are those of blocks.
+    ///
+    /// # Errors
+    /// If one is of no block.
+    pub fn check_targets(&self, targets: &BTreeMap<String, [f64; 2]>) -> Result<(), Refusal> {
+        let blocks = self.block.scenario.assembly.blocks();
+        let unknown = targets.keys().find(|name| !blocks.iter().any(|block| block.name == **name));
+        unknown.map_or(Ok(()), |name| {
+            let names: Vec<&str> = blocks.iter().map(|block| block.name.as_str()).collect();
+            let name = quote_clipped(name);
+            Err(Refusal::Task(format!("targets names no block: {name:?}; want one of {}", names.join(", "))))
+        })
+    }
+
+    /// Returns the targets of the blocks by which the end effector of the led one comes to a point of its plane with a
+    /// height, m, in the axes of the block; of a point out of reach, as near as the way there leads. `run` is that of the
+    /// led block; `None` if it carries itself, or a block of its chain holds no b.
+    pub fn targets_in_space(&self, run: &Run, point: &Vector3<f64>) -> Option<BTreeMap<String, [f64; 2]>> {
+        let own = &self.block.scenario.assembly.blocks()[self.block.block].mount;
+        let below = own.on.map_or_else(Vector3::zeros, |on| self.now.tips[on]);
+        self.targets_on_base(run, &(below + own.at + own.axes * point))
+    }
+
+    /// Does the same as [`targets_in_space`](Self::targets_in_space) for a place in axes of the base, m.
+    pub fn targets_on_base(&self, run: &Run, to: &Vector3<f64>) -> Option<BTreeMap<String, [f64; 2]>> {
+        let assembly = &self.block.scenario.assembly;
+        let mut chain = vec![self.block.block];
+        while let Some(on) = assembly.blocks()[chain[chain.len() - 1]].mount.on {
+            chain.push(on);
+        }
+        if chain.len() < 2 {
+            return None;
+        }
+        chain.reverse();
+        let (mut parts, mut angles) = (Vec::new(), Vec::new());
+        for i in &chain {
+            let run = if *i == self.block.block { run } else { &self.others.get(*i)?.as_ref()?.run };
+            let (space, mount) = (run.pose_space().ok()?, &assembly.blocks()[*i].mount);
+            let (a, b) = space.project(&run.simulation().reference().q);
+            let axis = |column: usize| mount.axes.column(column).into_owned();
+            let offset = mount.at + axis(2) * assembly.blocks()[*i].platform_height();
+            parts.push(ChainBlock::new(space.clone(), b, offset, [axis(0), axis(1)]));
+            angles.extend(a.iter().copied());
+        }
+        let chain_of = PlatformChain::new(parts);
+        let from = chain_of.place(&angles);
+        let count = ((to - from).norm() / STRIDE).ceil().clamp(1.0, MAX_STRIDES) as usize;
+        let way: Vec<Vector3<f64>> =
+            (0..=count).map(|i| from + (i as f64 / count as f64) * (to - from)).collect();
+        let reached = nearest_on(&chain_of, DVector::from_vec(angles), &way);
+        let ends = chain_of.ends(reached.as_slice());
+        Some(chain.iter().zip(ends).map(|(i, end)| (assembly.blocks()[*i].name.clone(), [end.re, end.im])).collect())
+    }
+
     /// Applies to the bound block what an edit of b asks of it.
     ///
     /// # Errors
     /// If it cannot follow as fast.
     pub fn follow(&mut self, edit: &Edit) -> Result<(), Refusal> {
+        if let Edit::DragBlocks { targets } = edit {
+            let blocks = self.block.scenario.assembly.blocks();
+            for (block, other) in blocks.iter().zip(&mut self.others) {
+                let Some((other, [x, y])) = other.as_mut().zip(targets.get(&block.name)) else { continue };
+                let why = |why| Refusal::OfBlock { block: block.name.clone(), why: Box::new(why) };
+                other.run.apply(&Edit::DragTarget { x: *x, y: *y }).map_err(why)?;
+                other.frame = other.run.frame();
+            }
+            return Ok(());
+        }
         let Some((i, [relation, factor])) = self.bound else { return Ok(()) };
         let Some(edit) = against(edit, relation, factor) else { return Ok(()) };
         let name = &self.block.scenario.assembly.blocks()[i].name;

@@ -171,11 +171,6 @@ impl TipChain {
         &self.blocks
     }
 
-    /// Returns the chain.
-    pub fn chain(&self) -> &PlatformChain {
-        &self.chain
-    }
-
     /// Returns the angles at a place near some; of a place that is not reached, says which one is.
     fn pose(&self, key: &'static str, p: &Vector3<f64>, near: &DVector<f64>) -> Result<DVector<f64>, TipError> {
         pose_at(&self.chain, p, near).or_else(|nearest| {
