@@ -292,6 +292,7 @@ fn the_library_does_not_panic() {
         ("session/scenario/machine_file.rs", "a brief is plain data"),
         ("session/edit.rs", "an edit is plain data"),
         ("mechanics/assembly/model.rs", "a machine is plain data"),
+        ("mechanics/assembly/file.rs", "an assembly is plain data"),
         ("session/assembly/file.rs", "is plain data"),
         ("session/assembly/file.rs", "a scenario is written as TOML"),
     ];
