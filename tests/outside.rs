@@ -20,6 +20,8 @@ macro_rules! tests {
 mod afloat;
 #[path = "exchange/arms.rs"]
 mod arms;
+#[path = "outside/assembly_weights.rs"]
+mod assembly_weights;
 #[path = "outside/drags.rs"]
 mod drags;
 #[path = "outside/drawings.rs"]
@@ -93,6 +95,7 @@ fn main() -> ExitCode {
         ("stillbase, pandas, matplotlib, mujoco, pinocchio", package::NOTEBOOKS),
         #[cfg(feature = "cli")]
         ("stillbase", page::PACKAGE),
+        ("scipy", assembly_weights::TESTS),
         ("scipy", drags::TESTS),
         ("scipy", postures::TESTS),
         ("scipy", trim::TESTS),

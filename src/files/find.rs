@@ -22,8 +22,8 @@ use stillbase_settings::range::shortened;
 use stillbase_settings::spelling::UnknownName;
 use stillbase_simulation::plant::{Base, BaseKind};
 
-const IS_ASSEMBLY: &str = "this is an assembly of several machines: want one machine; the window, check, dynamics, simulate, headless, render and \
-     export-model take an assembly, too";
+const IS_ASSEMBLY: &str = "this is an assembly of several machines: want one machine; the window, check, design --counterweights, \
+                           dynamics, simulate, headless, render and export-model take an assembly, too";
 
 const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; the window, \
                               simulate, headless, render and export-model take this one, too";

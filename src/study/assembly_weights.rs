@@ -10,7 +10,7 @@ use super::front_point::FrontPoint;
 use super::measures::Measures;
 use stillbase_mechanics::assembly::Assembly;
 use stillbase_mechanics::counterweights::{
-    AssemblyFrontSearch, CounterweightSpec, PlacedCounterweights, place_in_assembly, reachable_goals,
+    AssemblyFrontSearch, CounterweightSpec, PlacedCounterweights, SpatialGoal, place_in_assembly, reachable_goals,
 };
 use stillbase_mechanics::machine::{Counterweight, Inertia};
 use stillbase_query::answer_while;
@@ -28,6 +28,8 @@ pub struct AssemblyWeightReport {
     pub gap: f64,
     /// Whether the gap is within rounding.
     pub certified: bool,
+    /// Mass, kg, that would be added for the same objective if (7) and (8) alone had to hold, each block in its plane.
+    pub added_mass_in_plane: f64,
     /// Whether (7) and (8) hold for every block with what it carries.
     pub is_balanced: bool,
     /// Whether no block reacts, in any of the six components.
@@ -81,23 +83,40 @@ pub struct BlockWeightReport {
     pub reasons: Vec<String>,
 }
 
+/// Request for the counterweights of an assembly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyWeightRequest {
+    /// Sites on the links of all blocks, and the objective of the whole.
+    pub spec: CounterweightSpec,
+    /// Whether each block is balanced in its plane alone, (7) and (8), although it may tilt the base.
+    pub in_plane: bool,
+    /// Number of assemblies on the Pareto front from the least mass to the least inertia.
+    pub front: Option<usize>,
+}
+
 /// Balances all blocks of an assembly together by counterweights, (7) and (8), and so that they do not tilt the base where
-/// places and heights allow it. Reports on it, with a Pareto front of `front` assemblies if that is asked for.
+/// places and heights allow it. Reports on it.
 ///
 /// # Errors
 /// Fails if no counterweights balance the blocks, the request is invalid, or `goes_on` ends the work.
 pub fn balance_assembly(
     assembly: &Assembly,
-    spec: &CounterweightSpec,
-    front: Option<usize>,
+    request: &AssemblyWeightRequest,
     goes_on: &dyn Fn() -> bool,
 ) -> Result<(Assembly, AssemblyWeightReport), NoCounterweights> {
-    let goals = reachable_goals(assembly, spec);
+    let AssemblyWeightRequest { spec, in_plane, front } = request;
+    let planar = vec![SpatialGoal::PLANAR; assembly.blocks().len()];
+    let least_in_plane = place_in_assembly(assembly, spec, &planar).map_err(NoCounterweights::Weights)?;
+    let goals = if *in_plane { planar.clone() } else { reachable_goals(assembly, spec) };
     if !goes_on() {
         return Err(NoCounterweights::Stopped);
     }
-    let placed = place_in_assembly(assembly, spec, &goals).map_err(NoCounterweights::Weights)?;
-    let front_points: Vec<FrontPoint> = match front {
+    let added_mass_in_plane = least_in_plane.added_mass;
+    let placed = match goals == planar {
+        true => least_in_plane,
+        false => place_in_assembly(assembly, spec, &goals).map_err(NoCounterweights::Weights)?,
+    };
+    let front_points: Vec<FrontPoint> = match *front {
         Some(count) => {
             let input = (assembly.clone(), spec.clone(), goals, count);
             let front = answer_while::<AssemblyFrontSearch>(input, &mut |_| goes_on());
@@ -124,6 +143,7 @@ pub fn balance_assembly(
         torque: torque(after, spec),
         gap: placed.gap,
         certified: placed.is_certified(),
+        added_mass_in_plane,
         is_balanced: blocks.iter().all(|block| block.is_balanced),
         silent: report.silent,
         blocks,

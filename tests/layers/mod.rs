@@ -291,7 +291,8 @@ fn the_library_does_not_panic() {
         ("session/scenario/file.rs", "a scenario is plain data"),
         ("session/scenario/machine_file.rs", "a brief is plain data"),
         ("session/edit.rs", "an edit is plain data"),
-        ("mechanics/assembly/model.rs", "is plain data"),
+        ("mechanics/assembly/model.rs", "a machine is plain data"),
+        ("mechanics/assembly/file.rs", "an assembly is plain data"),
         ("session/assembly/file.rs", "is plain data"),
         ("session/assembly/file.rs", "a scenario is written as TOML"),
     ];

@@ -2,6 +2,7 @@
 
 pub mod arm_on_base;
 mod assembly;
+mod assembly_weights;
 mod balance;
 mod bodies;
 mod breakdown;

@@ -109,7 +109,7 @@ fn blocks_follow_tasks_of_their_own() {
         true
     );
     for (args, words) in [
-        (&["design", "carrier-and-wrist"][..], "want one machine"),
+        (&["design", "carrier-and-wrist"][..], "want --counterweights"),
         (&["spectrum", "wrist-across"], "render and export-model take this one"),
         (&["headless", "case-1", "wrist-across", "-o", "x.rrd"], "recorded by itself"),
         (&["simulate", "wrist-across", "--signals", "nothing"], "no signal \"nothing\""),
@@ -228,9 +228,105 @@ fn commands_for_one_machine_say_that_there_are_several() {
         refuses(&[command, "wrist-across"], "this is a scenario of an assembly");
         refuses(&[command, &led], "this is a scenario of an assembly");
     }
+    refuses(&["layers", &own], "this is an assembly of several machines");
+    refuses(
+        &["design", "nine-link", &own, "--counterweights", "--front", "3"],
+        "this is an assembly of several machines",
+    );
     for command in ["design", "layers"] {
-        refuses(&[command, &own], "this is an assembly of several machines");
         refuses(&[command, "wrist-across"], "this is a scenario of an assembly");
     }
     refuses(&["simulate", "nowhere"], "arm-against-arm");
+}
+
+/// All blocks are balanced together: the file is silent, and what a wrist weighs more its carrier is balanced for.
+#[test]
+fn design_balances_all_blocks_together() {
+    let folder = Folder::new("assemblies");
+    let file = word(folder.path("heavier.toml"));
+    let ask = ["design", "carrier-and-wrist", "--set", "wrist.link.2.com=0.02", "--counterweights"];
+    let found = object(&[&ask[..], &["-o", &file]].concat());
+    assert_eq!(
+        (&found["certified"], &found["silent"], &found["is_balanced"]),
+        (&json!(true), &json!(true), &json!(true))
+    );
+    let blocks = found["blocks"].as_array().expect("a list");
+    let added: f64 = blocks.iter().map(|block| block["added_mass"].as_f64().expect("kg")).sum();
+    near(&found["added_mass"], &json!(added), 1e-9, "added mass");
+    assert!(blocks[1]["weights"].as_array().is_some_and(|weights| !weights.is_empty()));
+    let wrist = blocks[1]["added_mass"].as_f64().expect("kg");
+    near(&blocks[0]["carried_mass"], &json!(0.42 + wrist), 1e-9, "what the carrier carries");
+    let checked = object(&["check", &file, "--strict"]);
+    assert_eq!(checked["silent"], json!(true));
+    near(&checked["mass"], &json!(0.42 + 3.68 + added), 1e-9, "mass");
+    near(&checked["blocks"][0]["d"], &blocks[0]["d"], 1e-9, "D_k of the carrier");
+    let text = fs::read_to_string(&file).expect("a file");
+    assert!(text.contains("name = \"heavier\"") && text.contains("carrier-and-wrist, balanced by counterweights"));
+    // It is simulated by itself, and puts nothing on the base.
+    assert_eq!(object(&["simulate", &file])["verdict"]["silent_moment"], json!([true, true, true]));
+    let out = stillbase(&[&ask[..], &["-o", &file]].concat());
+    assert_eq!(out.status.code(), Some(2), "a file that exists stays");
+    // What is minimised is that of the whole.
+    let inertia = |of: &Value| -> f64 {
+        let blocks = of["blocks"].as_array().expect("a list");
+        blocks.iter().flat_map(|block| numbers(&block["d"])).sum()
+    };
+    let quick = object(&[&ask[..], &["--objective", "inertia"]].concat());
+    assert!(inertia(&quick) < inertia(&found) - 1e-3 && quick["added_mass"].as_f64() > found["added_mass"].as_f64());
+    let front = object(&[&ask[..], &["--front", "4"]].concat());
+    let points: Vec<Vec<f64>> = front["front"].as_array().expect("a list").iter().map(numbers).collect();
+    assert_eq!((points.len(), front["front_points"][1]["certified"].clone()), (4, json!(true)));
+    near(&json!(points[0][0]), &found["added_mass"], 2e-6, "the lightest");
+    near(&json!(points[3][1]), &json!(inertia(&quick)), 2e-6, "the one of least inertia");
+    // Torques are those of the task; the blocks of another do not fit.
+    let torque = object(&[&ask[..], &["--objective", "torque", "--task", "four-freedoms"]].concat());
+    let light = object(&[&ask[..], &["--task", "four-freedoms"]].concat());
+    assert!(torque["torque"].as_f64() < light["torque"].as_f64());
+    let said = prints(&ask);
+    for words in ["block wrist · wrist", "silent: nothing reaches the base", "counterweight on link", "within"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+}
+
+/// What counterweights cannot mend is said, with the mount that would be right; typed in, it is.
+#[test]
+fn design_says_which_block_still_reacts() {
+    let ask = ["design", "wrist-off-its-pin", "--counterweights"];
+    let found = object(&ask);
+    assert_eq!((&found["is_balanced"], &found["silent"]), (&json!(true), &json!(false)));
+    let reasons = found["blocks"][0]["reasons"].as_array().expect("a list");
+    assert_eq!(reasons.len(), 2, "{reasons:?}");
+    let strict = stillbase(&[&ask[..], &["--strict"]].concat());
+    assert!(strict.status.code() == Some(1) && text(&strict.stderr).contains("want block wrist at = [0, 0, 0.02]"));
+    let whole = prints(&["machines", "wrist-off-its-pin"]);
+    let folder = Folder::new("assemblies");
+    let at = |at: &str| {
+        let file = folder.file("mended.toml", whole.replace("at = [0.03, 0, 0.02]", &format!("at = {at}")));
+        object(&["design", &word(file), "--counterweights"])
+    };
+    let on_pin = at("[0, 0, 0.02]");
+    let reason = on_pin["blocks"][0]["reasons"][0].as_str().expect("a reason");
+    assert!(reason.contains("as with block wrist at = [0, 0, 0]"), "{reason}");
+    assert_eq!(at("[0, 0, 0]")["silent"], json!(true));
+    for (args, status, words) in [
+        (&["carrier-and-wrist", "--counterweights", "--max-mass", "2"][..], 1, "link carrier.1: no heavier"),
+        (&["carrier-and-wrist", "--counterweights", "--range", "carrier.2=-0.1,0.1"], 1, "block carrier: the force"),
+        (&["carrier-and-wrist", "--counterweights", "--range", "elbow.2=-0.1,0.1"], 2, "want one of carrier.1"),
+        (&["carrier-and-wrist", "--counterweights", "--payload", "0,1"], 2, "want payload.mass of a block"),
+        (&["carrier-and-wrist", "--counterweights", "--length", "l1=0.1,0.2"], 2, "--length: carrier-and-wrist is"),
+        (&["carrier-and-wrist", "--counterweights", "--bars", "0.03,0.006"], 2, "--bars: carrier-and-wrist is"),
+        (&["carrier-and-wrist", "--counterweights", "--objective", "torque"], 2, "want --task SCENARIO"),
+        (&["carrier-and-wrist", "--counterweights", "--task", "case-3"], 2, "want the scenario of an assembly"),
+        (&["carrier-and-wrist", "--counterweights", "--task", "arm-against-arm"], 2, "want carrier (3 drives)"),
+        (&["nine-link", "--counterweights", "--in-plane"], 2, "want it with an assembly"),
+    ] {
+        fails_first(&[&["design"], args].concat(), status, words);
+    }
+}
+
+/// As [`fails`], after notes of counterweights that are taken off.
+fn fails_first(args: &[&str], status: i32, words: &str) {
+    let out = stillbase(args);
+    assert_eq!(out.status.code(), Some(status), "{args:?}: {}", text(&out.stderr));
+    assert!(text(&out.stderr).contains(words) && out.stdout.is_empty(), "{args:?}: {}", text(&out.stderr));
 }

@@ -4,7 +4,9 @@ use stillbase_mechanics::assembly::Assembly;
 use stillbase_mechanics::counterweights::CounterweightSpec;
 use stillbase_session::scenario::DesignBrief;
 use stillbase_settings::number::{fixed, fixed_or_finer, significant};
-use stillbase_study::assembly_weights::{AssemblyWeightReport, BlockWeightReport, balance_assembly};
+use stillbase_study::assembly_weights::{
+    AssemblyWeightReport, AssemblyWeightRequest, BlockWeightReport, balance_assembly,
+};
 
 use super::super::check::balance_tables;
 use super::super::failure::Failure;
@@ -35,8 +37,10 @@ impl DesignArguments {
             report_removed(&block.machine, &format!("block {}: ", block.name));
         }
         let front = self.weighing.has_front().then(|| self.weighing.front_count());
-        let found = balance_assembly(assembly, &spec, front, &goes_on);
-        let (balanced, answer) = found.map_err(|why| self.weighing.failure(why, &spec.stock))?;
+        let (stock, in_plane) = (spec.stock, self.weighing.in_plane);
+        let request = AssemblyWeightRequest { spec, in_plane, front };
+        let found = balance_assembly(assembly, &request, &goes_on);
+        let (balanced, answer) = found.map_err(|why| self.weighing.failure(why, &stock))?;
         self.new_machine.save_assembly(&balanced, format!("{}, balanced by counterweights", assembly.name))?;
         self.format.print(&answer, |answer| text(answer, &balanced, &assembly.name))?;
         let reacting = answer.blocks.iter().flat_map(|block| block.reasons.iter().map(move |why| (&block.block, why)));
@@ -96,9 +100,14 @@ fn text(report: &AssemblyWeightReport, balanced: &Assembly, name: &str) -> Strin
         let numbers = [measures.added_mass, *carried_mass, balance.d.iter().sum()].map(|x| fixed_or_finer(x, 6));
         blocks.row([block.clone(), on.clone()].into_iter().chain(numbers));
     }
+    let (added, in_plane) = (report.measures.added_mass, report.added_mass_in_plane);
+    let price = match added - in_plane > 1e-6 * in_plane {
+        true => format!("in their planes  {} kg would do; --in-plane takes these\n", fixed_or_finer(in_plane, 6)),
+        false => String::new(),
+    };
     let mut text = format!(
-        "{name} · {} kg added{} · {sure}\n\nassembly         {verdict}\n{}\n{blocks}",
-        fixed_or_finer(report.measures.added_mass, 6),
+        "{name} · {} kg added{} · {sure}\n\nassembly         {verdict}\n{price}{}\n{blocks}",
+        fixed_or_finer(added, 6),
         shape_words(&all),
         measures::text(&report.measures)
     );

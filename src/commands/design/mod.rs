@@ -109,11 +109,14 @@ fn penalty(text: &str) -> Result<f64, String> {
 impl DesignArguments {
     /// Prints the new centres of mass and the balance that they achieve, and writes the machine.
     pub fn run(&self) -> Result<(), Failure> {
+        if let (true, Some(assembly)) = (self.other_machines.is_empty(), self.machine.assembly_file()?) {
+            return self.assembly(&assembly);
+        }
+        if self.weighing.in_plane {
+            return Err(Failure::wrong_input("--in-plane: a machine by itself is: want it with an assembly"));
+        }
         if !self.other_machines.is_empty() {
             return self.fronts();
-        }
-        if let Some(assembly) = self.machine.assembly_file()? {
-            return self.assembly(&assembly);
         }
         let MachineFile { machine, design } = self.machine.load_file()?;
         let task = self.task.as_ref().map(|name| task_run(name, &[&machine])).transpose()?;

@@ -113,6 +113,11 @@ pub struct WeightArguments {
     /// mass or Σ D_k may lie above the minimum
     #[arg(long, value_name = "N", requires = "counterweights", value_parser = clap::value_parser!(u16).range(2..=1000))]
     front: Option<u16>,
+    /// Balance each block of an assembly in its plane alone, Eqs (7) and (8). It may then tilt the base, as links at
+    /// different heights do, and what it carries may lie beside its end effector. Otherwise it does neither where any
+    /// counterweights prevent it, at the price that the answer tells
+    #[arg(long, requires = "counterweights")]
+    pub in_plane: bool,
     /// Cut the links from flat bars of this width and thickness, m, of a material; default: aluminium. Tails, arms and
     /// holes are weighed, and the design repeated until bars and discs agree. A link with parts keeps them. A front is
     /// that of counterweights on these bars

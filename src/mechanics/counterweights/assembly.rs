@@ -35,7 +35,8 @@ pub fn place_in_assembly(
 /// each is taken in turn, from the base outwards, that they can meet with those before. No block has any if not even (7)
 /// and (8) can be met.
 pub fn reachable_goals(assembly: &Assembly, spec: &CounterweightSpec) -> Vec<SpatialGoal> {
-    let is_reached = |goals: &[SpatialGoal]| is_possible(Subject::assembly(assembly, goals), spec);
+    let any = CounterweightSpec { objective: Objective::mass(), ..spec.clone() };
+    let is_reached = |goals: &[SpatialGoal]| is_possible(Subject::assembly(assembly, goals), &any);
     let count = assembly.blocks().len();
     let all = vec![SpatialGoal::SILENT; count];
     if is_reached(&all) {

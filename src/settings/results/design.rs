@@ -48,6 +48,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("best.point", "1", "Number of the point, from 0."),
     row("reasons.point", "1", "Number of the point, from 0."),
     row("options", "", "The settings as options; with the other options of the study they find this design alone."),
+    row("added_mass_in_plane", "kg", "Mass that would be added if Eqs (7) and (8) alone had to hold."),
     row("is_balanced", "", "Whether Eqs (7) and (8) hold; over a range of payloads they need not."),
     row("payload", "", "Residuals of balance over the range of payloads."),
     row("payload.payload", "kg", "Mass of the payload."),
