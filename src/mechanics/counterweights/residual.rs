@@ -65,5 +65,5 @@ pub(super) fn conditions(
             changes: request.sites.iter().map(change).collect(),
         }
     };
-    Ok(Condition::all(bare.drives()).enumerate().map(of).collect())
+    Ok(Condition::all_of(bare).enumerate().map(of).collect())
 }

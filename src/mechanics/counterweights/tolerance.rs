@@ -32,7 +32,7 @@ pub struct WorstResidual {
 /// signs. Products of deviations are neglected.
 pub fn worst_residual(machine: &Machine, tolerance: &PlacementTolerance) -> WorstResidual {
     let mut worst = WorstResidual { force: 0.0, coupling: 0.0 };
-    for condition in Condition::all(machine.drives()) {
+    for condition in Condition::all_of(machine) {
         let each = machine.spec().counterweights.iter().filter_map(|weight| {
             let link = machine.spec().link_index(&weight.link)?;
             let part = &machine.resolved_links()[link];
