@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use stillbase::mechanics::arm_on_base::{ArmOnBase, FloatingBase};
-use stillbase::mechanics::assembly::{Assembly, BlockState, Momentum, SpatialBase};
+use stillbase::mechanics::assembly::{Assembly, BlockState, Momentum, SpatialBase, parse as parse_assembly};
 use stillbase::mechanics::balance::design;
 use stillbase::mechanics::counterweights::{
     CounterweightSite, CounterweightSpec, CounterweightStock, Objective, place_weights,
@@ -10,9 +10,11 @@ use stillbase::mechanics::counterweights::{
 use stillbase::mechanics::dynamics::{ExternalLoads, forward, inverse, inverse_with_wrench};
 use stillbase::mechanics::joint_forces::Joints;
 use stillbase::mechanics::loads::Loads;
-use stillbase::mechanics::machine::{Inertia, Machine, parse};
+use stillbase::mechanics::machine::{Inertia, Machine, parse, to_toml};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector};
 use stillbase::planning::off_plane::momentum::{MomentumModel, TipFrame};
+
+use stillbase::study::assembly_check::AssemblyReport;
 
 use super::assembly::{Piece, after, pieces, random_states};
 use crate::support::Noise;
@@ -123,8 +125,8 @@ fn by_points(assembly: &Assembly, state: &BlockState) -> [Vector3<f64>; 3] {
     let h = 1e-3;
     let at = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|n| pieces(assembly, &after(std::slice::from_ref(state), n * h)));
     let mut sums = [Vector3::zeros(); 3];
-    for p in 0..at[2].len() {
-        match &at[2][p] {
+    for (p, piece) in at[2].iter().enumerate() {
+        match piece {
             Piece::Mass(mass, place) => {
                 let x: [Vector3<f64>; 5] = std::array::from_fn(|i| match &at[i][p] {
                     Piece::Mass(_, place) => *place,
@@ -288,6 +290,50 @@ fn links_that_keep_their_orientation_are_balanced_too() {
             assert!(force.norm() < 1e-5 && (moment.z - want).abs() < 1e-5, "{force:?} {moment:?} {want}");
         }
     }
+}
+
+/// A block reacts by its own platform, and is silent when its coupling is undone by what it carries beside its pin.
+#[test]
+fn a_block_says_what_its_platform_does() {
+    let report = |hand: &str, carried: &str| {
+        let mut machine = platform().set("gravity", "0,0").expect("weightless");
+        for name in ["frame", "elbow", "hand"] {
+            machine = machine.set(&format!("link.{name}.com_normal"), "0").expect("on the axis");
+        }
+        machine = machine.set("payload.mass", "1").expect("a payload");
+        machine = design(&machine, &vec![1.0; machine.links().len()]).expect("centres of mass");
+        machine =
+            machine.set("payload.mass", "0").expect("what is carried").set("link.hand.com_normal", hand).expect("off");
+        let ball = "name = 'ball'\n[[drive]]\nname = '1'\n[[link]]\nname = '1'\ndrive = '1'\nattach = 'base'\n\
+                    length = 0.1\nmass = 1.0\ninertia = 0.01\ncom = 0.0\n[end_effector]\nlink = '1'\n";
+        let text = format!(
+            "kind = \"assembly\"\nname = \"two\"\n[[block]]\nname = \"arm\"\nmachine = \"\"\"\n{}\"\"\"\n[[block]]\n\
+             name = \"ball\"\non = \"arm\"\nat = {carried}\nmachine = \"\"\"\n{ball}\"\"\"\n",
+            to_toml(&machine)
+        );
+        let assembly = parse_assembly(&text, "two", &|text| parse(text, "own")).expect("an assembly");
+        let states = random_states(&mut Noise::of(885), &assembly);
+        // The arm holds its b, and so does what it carries.
+        let lambda = AssemblyReport::of(&assembly).blocks[0].lambda.clone();
+        let along = |x: &PerDrive| PerDrive::from_fn(2, |k| if k == 0 { -lambda[1] * x[1] } else { x[1] });
+        let still = PerDrive::zeros(1);
+        let states: Vec<BlockState> = vec![
+            BlockState { qd: along(&states[0].qd), qdd: along(&states[0].qdd), ..states[0] },
+            BlockState { qd: still, qdd: still, ..states[1] },
+        ];
+        let felt = assembly.loads(&states, |_, _| {}).total();
+        (AssemblyReport::of(&assembly).blocks[0].clone(), felt.force.norm() + felt.moment.norm())
+    };
+    let (silent, felt) = report("0", "[0, 0, 0]");
+    assert!(silent.silent && felt < 1e-9, "{silent:?} {felt}");
+    let (own, felt) = report("0.05", "[0, 0, 0]");
+    assert!(own.reasons.iter().any(|why| why.starts_with("its links that keep their orientation")), "{own:?}");
+    assert!(felt > 1e-3 && !own.silent, "{felt}");
+    let (carried, felt) = report("0", "[0, 0.02, 0]");
+    assert!(carried.reasons[0].starts_with("what it carries (ball)") && felt > 1e-3, "{carried:?} {felt}");
+    // 0.4 kg at 50 mm to the left are undone by 1 kg at 20 mm to the right.
+    let (undone, felt) = report("0.05", "[0, -0.02, 0]");
+    assert!(undone.silent && felt < 1e-9, "{undone:?} {felt}");
 }
 
 #[test]
