@@ -148,7 +148,7 @@ impl Card {
     /// Returns the card of a link that is being dragged.
     pub fn turned(i: usize, session: &Session) -> Option<Self> {
         let (machine, frame) = (&session.scenario().machine, session.frame());
-        let drive = machine.resolved_links().get(i)?.drive;
+        let drive = machine.drive_of_link(i)?;
         let title = format!("drive {}, q{} = {}°", drive + 1, subscript(drive + 1), degrees(frame.q[drive]));
         let held = session.run().pose_space().is_ok_and(|map| map.leaves_freedoms());
         let others = if held { "the tip stays, and" } else { "the others follow:" };

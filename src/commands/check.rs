@@ -146,6 +146,14 @@ fn heights_lines(clashes: Option<&Result<Vec<Clash>, NoLayers>>) -> String {
     }
 }
 
+/// Says how far links that keep their orientation are from balance; nothing if there are none.
+fn ground_line(inertia: &Inertia) -> String {
+    match inertia.grounded {
+        true => format!("kept orientation largest |C_0k| {:.1e} kg m²\n", inertia.ground_residual()),
+        false => String::new(),
+    }
+}
+
 impl CheckArguments {
     /// Prints the verdict; a machine that is not balanced is no failure.
     pub fn run(&self) -> Result<(), Failure> {
@@ -189,13 +197,14 @@ impl CheckArguments {
             format!(
                 "{} · {}\n\nmachine          {}\nmass             {} kg\nforce balanced   {}, largest |g_k| {force:.1e} kg m\n\
                  invariant        {}, largest |C_kl| {coupling:.1e} kg m²\n\
-                 pose constant    {}\n{base_line}{}\n{}{}{}",
+                 {}pose constant    {}\n{base_line}{}\n{}{}{}",
                 machine.name(),
                 machine.spec().summary,
                 answer.machine.words,
                 fixed(answer.mass, 3),
                 yes(answer.force_balanced),
                 yes(answer.invariant),
+                ground_line(&inertia),
                 constant,
                 heights_lines(clashes.as_ref()),
                 balance_tables(&answer.balance, &machine),

@@ -33,7 +33,7 @@ use super::output::{Format, TextTable, write_file};
 /// pose is the keyframe "start". URDF: the joints drive_… are the motors, and all other joints follow them; the element
 /// `<stillbase>` contains what URDF cannot express. Both: a base that floats comes along, with its mass and joints; data
 /// that plane motion does not need, such as inertias about other axes, are made up. An assembly, or its scenario, becomes a
-/// model of all blocks in space. Their names begin with that of the block, as wrist/drive_1; links are thin bars. Solids:
+/// model of all blocks in space. Their names begin with that of the block, as wrist/drive_1; links have inertia about all axes. Solids:
 /// bars, plates, counterweights, lumps, the payload, pins and spacers at their heights, in mm; `stillbase layers` finds
 /// the heights.
 #[derive(Args)]

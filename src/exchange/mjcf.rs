@@ -8,8 +8,8 @@
 //!
 //! Of an assembly each block is a body at its mount, whose plane is that of its axes x and y; names begin with that of the
 //! block. A platform is a body without mass on the end effector. A hinge turns it, and an equality keeps its orientation.
-//! A base that floats has a free joint. In space inertias about all axes count: links are thin bars unless their
-//! file states more.
+//! A base that floats has a free joint. In space inertias about all axes count: links are thin bars
+//! unless their file states more.
 //!
 //! Every rotor is a separate body. Behind a gear, it adds different amounts to the momentum (D) and to the inertia (H),
 //! whereas an armature would add to the inertia only. Inertias about axes in the plane do not affect a plane motion;
@@ -251,7 +251,7 @@ impl<'a> Model<'a> {
 
     fn pose_of(&self, i: usize, parent: Option<usize>, poses: &[&[f64]], all: &mut Vec<f64>) {
         let (Placed { machine, carries, .. }, q) = (&self.of.machines[i], poses[i]);
-        let direction = |j: Option<usize>| j.map_or(0.0, |j| q[machine.resolved_links()[j].drive]);
+        let direction = |j: Option<usize>| j.and_then(|j| machine.drive_of_link(j)).map_or(0.0, |k| q[k]);
         for k in self.rotors_on(i, parent) {
             let on = machine.motors().on(k).map_or(0.0, |on| q[on]);
             let ratio = machine.spec().drives[k].rotor.map_or(1.0, |rotor| rotor.ratio);

@@ -71,7 +71,8 @@ impl<'a> Tree<'a> {
         let parts = machine.resolved_links();
         let turned = |k: usize| {
             let on = machine.motors().on(k);
-            let is_turned = |j: &usize| parts[*j].drive == k && parts[*j].parent.map(|p| parts[p].drive) == on;
+            let is_turned =
+                |j: &usize| parts[*j].drive == k && parts[*j].parent.and_then(|p| machine.drive_of_link(p)) == on;
             (0..parts.len()).find(is_turned)
         };
         let links = (0..machine.drives()).map(turned).collect::<Vec<_>>();
@@ -201,7 +202,7 @@ fn joints(machine: &Machine, turned: &[Option<usize>], carries: bool) -> Vec<Tre
         joints.push(TreeJoint { parent, at, child: part, turns: last });
     };
     for j in (0..parts.len()).filter(|j| !turned.contains(&Some(*j))) {
-        let drives = [parts[j].parent.map(|p| parts[p].drive), Some(parts[j].drive)];
+        let drives = [parts[j].parent.and_then(|p| machine.drive_of_link(p)), machine.drive_of_link(j)];
         series(&mut joints, root(j), drives, &|number| TreePart::Between(j, number), TreePart::Link(j));
     }
     let (j, payload) = (machine.end_link(), machine.spec().payload);

@@ -27,7 +27,7 @@ impl PinAngleSum {
     pub fn of_drives(machine: &Machine, from: Option<usize>, to: usize) -> Option<Self> {
         let parts = machine.resolved_links();
         let first = |k: usize| parts.iter().position(|part| part.drive == k);
-        let is_pair = |j: usize| parts[j].drive == to && parts[j].parent.map(|p| parts[p].drive) == from;
+        let is_pair = |j: usize| parts[j].drive == to && parts[j].parent.and_then(|p| machine.drive_of_link(p)) == from;
         let there = (0..parts.len()).find(|j| is_pair(*j));
         let to = there.or_else(|| first(to))?;
         let from = match from {

@@ -12,8 +12,8 @@
 //! gravity torques are those of the machine.
 //!
 //! Each block of an assembly has a base at its mount, and names that begin with that of the block. A platform turns back by
-//! what its end effector turned, with mimic joints too. In space inertias about all axes count: links are thin bars unless their
-//! file states more.
+//! what its end effector turned, with mimic joints too. In space inertias about all axes count: links are thin bars
+//! unless their file states more.
 //!
 //! # What URDF cannot express
 //! URDF has no elements for gravity, for pins that close loops, and for limits of acceleration and jerk. It has none
@@ -283,7 +283,7 @@ impl<'a> Model<'a> {
         let ends = part.pins.iter().fold([0.0_f64, part.length], |[least, most], at| [least.min(*at), most.max(*at)]);
         let (middle, length) = (part.sign * 0.5 * (ends[0] + ends[1]), ends[1] - ends[0] + 2.0 * DRAWN_BAR_RADIUS);
         let bar = format!("<box size=\"{length} {} {}\"/>", 2.0 * DRAWN_BAR_RADIUS, 0.5 * DRAWN_BAR_RADIUS);
-        let material = tree.of_drive("drive", part.drive);
+        let material = tree.of_drive("drive", part.drive.min(machine.drives() - 1));
         let mut solids = vec![([middle, 0.0, 0.0], bar)];
         for weight in machine.spec().counterweights.iter().filter(|weight| weight.link == link.name) {
             let DrawnWeight { at, height, size } = self.cut.drawn_weight(weight);

@@ -61,7 +61,8 @@ impl FreeBody {
         }
         let mut rotating = arm.clone();
         rotating.turn_base();
-        rotating.drives = n + 1;
+        // Links that keep their orientation beside the base turn with it.
+        (rotating.drives, rotating.grounded) = (n + 1, false);
         let mut of_base = [Vector::default(); MAX_DRIVES];
         of_base[n] = base.com;
         rotating.add(base.mass, base.inertia, n, &of_base);

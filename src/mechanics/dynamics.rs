@@ -8,6 +8,7 @@
 //! | V_k | velocity terms, −Σ_l Im Z_kl q̇_l² | N m |
 //! | τ | H q̈ + V − γᵀ g − (∂p/∂q)ᵀ F; motors in joints give A⁻ᵀ τ ([`Motors`](crate::machine::Motors)) | N m |
 //! | D_k | Σ_l H_lk, and J r_k (1 − Σ_l r_l) of every rotor; angular momentum about B is D q̇ | kg m² |
+//! | C_0k | coupling of drive k with links that keep their orientation: D_k += Re (C_0k e_k), see [`Inertia`] | kg m² |
 //! | f_B | force on the base: dynamic −Σ g_k (i q̈_k − q̇_k²) e_k, static M g + F | N |
 //! | n_B | moment on the base about B: dynamic −d/dt(D q̇), static r_CM × M g + p × F, end effector p | N m |
 //!
@@ -69,7 +70,8 @@ impl MassMatrix {
         self.h[k][l]
     }
 
-    /// Returns D_k, kg m²: Σ_l H_lk, (A3), plus the contribution of rotors whose stators are on the base.
+    /// Returns D_k, kg m²: Σ_l H_lk, (A3), plus the contributions of rotors whose stators are on the base and of links
+    /// that keep their orientation.
     pub fn momentum_coefficient(&self, k: usize) -> f64 {
         (0..self.n).map(|l| self.h[l][k]).sum::<f64>() + self.taken_up[k]
     }
@@ -167,7 +169,11 @@ fn mass_matrix_of<const N: usize>(inertia: &Inertia, e: &UnitVectors, qd: &PerDr
     let (small, v) = assemble::<N>(inertia, leading_entries(e), leading_entries(qd.padded()));
     let mut h = [[0.0; MAX_DRIVES]; MAX_DRIVES];
     h.iter_mut().zip(small).for_each(|(to, from)| to[..N].copy_from_slice(&from));
-    (MassMatrix { n: N, h, taken_up: inertia.stator_reaction }, v.into())
+    let mut taken_up = inertia.stator_reaction;
+    if inertia.grounded {
+        (0..N).for_each(|k| taken_up[k] += (inertia.ground_coupling(k) * e[k]).re);
+    }
+    (MassMatrix { n: N, h, taken_up }, v.into())
 }
 
 /// Returns the mass matrix H, kg m², and the velocity terms V, N m, from unit vectors e(q_k) and rates, rad/s.
@@ -299,14 +305,15 @@ pub fn base_wrench(
     inverse_with_wrench(inertia, e, qd, qdd, around).1
 }
 
-/// Returns the rate of the angular momentum about B, d/dt (D q̇), N m, from H q̈, V and q̈.
+/// Returns the rate of the angular momentum about B, d/dt (D q̇), N m, from H q̈, V and q̈, without what links that keep
+/// their orientation add.
 #[inline(always)]
 pub fn angular_rate<const N: usize>(inertia: &Inertia, inertial: &[f64; N], v: &[f64; N], qdd: &[f64; N]) -> f64 {
     (0..N).map(|k| inertial[k] + v[k] + inertia.stator_reaction[k] * qdd[k]).sum()
 }
 
-/// Returns the base wrench at one state of motion, force in N and moment about B in N m. `momentum_rate` is d/dt (D
-/// q̇), N m.
+/// Returns the base wrench at one state of motion, force in N and moment about B in N m. `momentum_rate` is that of
+/// [`angular_rate`], N m.
 #[inline(always)]
 pub fn wrench_with<const N: usize>(
     inertia: &Inertia,
@@ -322,6 +329,15 @@ pub fn wrench_with<const N: usize>(
         first += ge;
         pull -= ge * Vector::new(-qd[k] * qd[k], qdd[k]);
         tip += e[k] * inertia.end_effector[k];
+    }
+    let mut momentum_rate = momentum_rate;
+    // If the base moves, the ground is one of its coordinates.
+    if inertia.grounded && N == inertia.drives {
+        first += inertia.g[N];
+        for k in 0..N {
+            let coupled = inertia.ground_coupling(k) * e[k];
+            momentum_rate += coupled.re * qdd[k] - coupled.im * (qd[k] * qd[k]);
+        }
     }
     BaseWrench {
         static_part: Wrench {
@@ -391,7 +407,8 @@ fn inertial_pull_of<const N: usize>(moments: &[Vector], e: &UnitVectors, qd: &Pe
 
 /// Σ_k g_k e_k = M r_CM, kg m.
 pub fn first_moment(inertia: &Inertia, e: &UnitVectors) -> Vector {
-    (0..inertia.drives).map(|k| inertia.g[k] * e[k]).sum()
+    let still = if inertia.grounded { inertia.g[inertia.drives] } else { Vector::default() };
+    (0..inertia.drives).map(|k| inertia.g[k] * e[k]).sum::<Vector>() + still
 }
 
 /// Centre of mass r_CM from B, m, (2).

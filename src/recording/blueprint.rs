@@ -341,7 +341,7 @@ impl Layout<'_> {
     fn bars(&mut self, name: &str, drives: usize, force: bool, origin: &EntityPath) -> Result<Part, StoreError> {
         let of = Condition::all(drives).filter(|c| matches!(c, Condition::Force(_)) == force);
         let lines: Vec<_> = of.collect();
-        let symbols: Vec<String> = lines.iter().take(MAX_TITLE_CONDITIONS).map(|line| line.symbol()).collect();
+        let symbols: Vec<String> = lines.iter().take(MAX_TITLE_CONDITIONS).map(|line| line.symbol(drives)).collect();
         let more = if lines.len() > MAX_TITLE_CONDITIONS { " …" } else { "" };
         let unit = lines.first().map_or("", |line| line.unit());
         let name = format!("{name}  {}{more}  {unit}, white: sum of all links", symbols.join(" "));

@@ -39,7 +39,8 @@ pub struct BlockReport {
     pub force_left: f64,
     /// Largest |C_kl| with what it carries, kg m².
     pub coupling_left: f64,
-    /// Largest |C_0k|: coupling with what is carried off the end effector, kg m².
+    /// Largest |C_0k|: coupling with what is carried off the end effector, and with links that keep their orientation,
+    /// kg m².
     pub ground_left: f64,
     /// Largest first moment of a drive weighted with heights, about the height of the centre of mass, kg m².
     pub tilt_left: f64,
@@ -107,7 +108,7 @@ impl BlockReport {
     fn of(assembly: &Assembly, i: usize) -> Self {
         let (block, conditions) = (&assembly.blocks()[i], assembly.conditions(i));
         let reasons: Vec<String> = conditions.reasons().map(|why| reason(assembly, i, &conditions, why)).collect();
-        let BlockConditions { carried, inertia, force, coupling, ground, tilt } = conditions;
+        let BlockConditions { carried, inertia, force, coupling, ground, tilt, .. } = conditions;
         Self {
             block: block.name.clone(),
             machine: block.machine.name().to_owned(),
@@ -151,6 +152,11 @@ fn reason(assembly: &Assembly, i: usize, of: &BlockConditions, why: Reacting) ->
                 significant(of.coupling)
             )
         }
+        Reacting::Ground if of.own_ground > 0.5 * of.ground || carried.is_empty() => format!(
+            "its links that keep their orientation are not balanced{with}: |C_0k| up to {} kg m²; want counterweights or \
+             centres of mass for which it is 0, as `stillbase design` finds them",
+            significant(of.ground)
+        ),
         Reacting::Ground => {
             let beside = of.carried.beside;
             let mend = match carried[..] {

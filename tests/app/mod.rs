@@ -7,6 +7,7 @@ mod files;
 mod finder;
 mod gallery;
 mod given;
+mod ground;
 mod guide;
 mod hands;
 mod intro;
@@ -46,7 +47,7 @@ use stillbase::session::scenario::Scenario;
 
 use crate::Test;
 
-pub const TESTS: [&[Test]; 34] = [
+pub const TESTS: [&[Test]; 35] = [
     saving::TESTS,
     blocks::TESTS,
     drawing::TESTS,
@@ -55,6 +56,7 @@ pub const TESTS: [&[Test]; 34] = [
     finder::TESTS,
     gallery::TESTS,
     given::TESTS,
+    ground::TESTS,
     guide::TESTS,
     hands::TESTS,
     intro::TESTS,

@@ -26,6 +26,7 @@ errors! {
     mechanics::machine::FileError,
     mechanics::machine::MachineError,
     mechanics::assembly::AssemblyError,
+    mechanics::assembly::ComplianceError,
     mechanics::balance::DesignError,
     mechanics::balance::RebalanceError,
     mechanics::counterweights::CounterweightError,

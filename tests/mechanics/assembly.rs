@@ -158,7 +158,9 @@ pub fn pieces(assembly: &Assembly, states: &[BlockState]) -> Vec<Piece> {
     }
     for ((block, state), mount) in assembly.blocks().iter().zip(states).zip(mounts) {
         let (machine, mount) = (&block.machine, mount.expect("found"));
-        let chained = |chain: &[f64]| -> Vector { state.q.iter().zip(chain).map(|(q, a)| *a * unit(*q)).sum() };
+        // What follows no drive keeps its orientation.
+        let ahead = |k: usize| state.q.get(k).map_or(Vector::new(1.0, 0.0), |q| unit(*q));
+        let chained = |chain: &[f64]| -> Vector { chain.iter().enumerate().map(|(k, a)| *a * ahead(k)).sum() };
         // Moments about the axes along, across and normal to the plane; the place is along the link and to its left.
         let mut body = |mass: f64, [a, c, n]: [f64; 3], height: f64, from: Vector, e: Vector, at: [f64; 2]| {
             let squared = [0.5 * (c + n - a), 0.5 * (a + n - c), 0.5 * (a + c - n)];
@@ -176,7 +178,7 @@ pub fn pieces(assembly: &Assembly, states: &[BlockState]) -> Vec<Piece> {
         };
         let spec = machine.spec();
         for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
-            let (from, e) = (chained(&part.root), part.sign * unit(state.q[part.drive]));
+            let (from, e) = (chained(&part.root), part.sign * ahead(part.drive));
             let own = [link.inertia_along, link.inertia_across.unwrap_or(link.inertia), link.inertia];
             body(link.mass, own, link.axial, from, e, [link.com, link.com_normal]);
             for weight in spec.counterweights.iter().filter(|weight| weight.link == link.name) {
@@ -187,7 +189,7 @@ pub fn pieces(assembly: &Assembly, states: &[BlockState]) -> Vec<Piece> {
         let payload = spec.payload;
         if payload.mass > 0.0 {
             let part = &machine.resolved_links()[machine.end_link()];
-            let e = part.sign * unit(state.q[part.drive]);
+            let e = part.sign * ahead(part.drive);
             let own = [payload.inertia_along, payload.inertia_across.unwrap_or(payload.inertia), payload.inertia];
             body(payload.mass, own, payload.axial, chained(machine.end_effector()), e, payload.offset);
         }

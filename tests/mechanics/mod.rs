@@ -12,6 +12,7 @@ mod counterweights;
 mod dynamics;
 mod family;
 mod faults;
+mod ground;
 pub mod inside;
 mod joint_forces;
 mod keep;

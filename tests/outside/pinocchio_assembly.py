@@ -34,6 +34,10 @@ for line in sys.stdin:
         torque = pin.rnea(model, data, q, v, a)
         roots = [i for i in range(1, model.njoints) if model.parents[i] == 0]
         held = sum((data.oMi[i].act(data.f[i]) for i in roots), pin.Force.Zero())
+        # What never moves is part of the world, and only weighs.
+        still = model.inertias[0]
+        weight = still.mass * model.gravity.linear
+        held -= pin.Force(weight, np.cross(still.lever, weight))
         momentum = pin.computeCentroidalMomentum(model, data, q, v)
         ends = [data.oMf[model.getFrameId(f"{block}/end_effector")].translation.tolist() for block in asked["blocks"]]
         answers.append({

@@ -5,7 +5,10 @@ use std::fmt::Write;
 use nalgebra::Vector3;
 use stillbase::mechanics::assembly::{self, Assembly};
 use stillbase::mechanics::balance::design;
-use stillbase::mechanics::machine::{Counterweight, CounterweightShape, Machine, parse, to_toml};
+use stillbase::mechanics::machine::{
+    Attach, Counterweight, CounterweightShape, GROUND, Length, LinkPoint, Machine, MachineSpec, PlaceOnLink, parse,
+    to_toml,
+};
 use stillbase::mechanics::planar::{PerDrive, Vector, unit};
 use stillbase::planning::pose_space::{NoPoseSpace, PoseSpace};
 
@@ -181,6 +184,36 @@ pub fn with_counterweights(noise: &mut Noise) -> Machine {
     Machine::new(spec).expect("still a machine")
 }
 
+/// Adds links that keep their orientation, on the base or on others, and links that they carry.
+pub fn add_ground(noise: &mut Noise, spec: &mut MachineSpec) {
+    for i in 0..1 + one_of(noise, 2) {
+        let places = spec.links.len() + 1;
+        let attach = match one_of(noise, places) {
+            0 => Attach::Base("base".into()),
+            j => Attach::On(LinkPoint { link: spec.links[j - 1].name.clone(), at: PlaceOnLink::default() }),
+        };
+        let kept = format!("g{i}");
+        let on = |link: &str| Attach::On(LinkPoint { link: link.into(), at: PlaceOnLink::default() });
+        let drive = spec.drives[one_of(noise, spec.drives.len())].name.clone();
+        for (name, drive, attach) in [
+            (kept.clone(), GROUND.to_owned(), attach),
+            (format!("h{i}"), drive, on(&kept)),
+            (format!("k{i}"), GROUND.to_owned(), on(&format!("h{i}"))),
+        ] {
+            let mut link = spec.links[0].clone();
+            (link.name, link.drive, link.attach) = (name, drive, attach);
+            link.direction = if noise.between(0.0, 1.0) < 0.5 { -1 } else { 1 };
+            link.length = Length::Metres(noise.between(0.05, 0.4));
+            link.mass = noise.between(0.1, 2.0);
+            (link.inertia, link.inertia_along, link.inertia_across) = (noise.between(1e-3, 0.05), 0.0, None);
+            link.com = noise.between(-0.2, 0.2);
+            link.com_normal = noise.between(-0.1, 0.1);
+            link.axial = noise.between(-0.1, 0.1);
+            spec.links.push(link);
+        }
+    }
+}
+
 /// A random direction frame.
 fn frame(noise: &mut Noise) -> [[f64; 3]; 2] {
     let mut any = || Vector3::from_fn(|_, _| noise.between(-1.0, 1.0));
@@ -235,6 +268,9 @@ pub fn an_assembly(noise: &mut Noise) -> Assembly {
             (spec.payload.inertia_along, spec.payload.inertia_across) = in_plane(noise, spec.payload.inertia);
         }
         spec.counterweights = spec.links.iter().filter_map(|link| a_counterweight(noise, &link.name)).collect();
+        if noise.between(0.0, 1.0) < 0.4 {
+            add_ground(noise, &mut spec);
+        }
         let machine = to_toml(&Machine::new(spec).expect("a machine"));
         let on = if i > 0 && noise.between(0.0, 1.0) < 0.6 { format!("b{}", i - 1) } else { "base".into() };
         let at: [f64; 3] = std::array::from_fn(|_| noise.between(-0.5, 0.5));

@@ -154,8 +154,8 @@ impl Piece {
 
     /// Writes the link's name above the piece, with `what` it is, and lines of data below.
     fn annotate(&mut self, machine: &Machine, j: usize, what: &str, lines: Vec<String>, height: f64) {
-        let (link, part) = (&machine.spec().links[j], &machine.resolved_links()[j]);
-        let drive = &machine.spec().drives[part.drive].name;
+        let link = &machine.spec().links[j];
+        let drive = &link.drive;
         let (left, top) = (self.reach[0], self.reach[3] + 1.1 * height);
         let name = format!("link {}{what}", link.name);
         let about = format!("follows drive {drive} · {} kg · {} kg m²", fixed(link.mass, 3), fixed(link.inertia, 6));

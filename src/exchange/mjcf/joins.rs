@@ -122,15 +122,18 @@ fn limited(machine: &Machine) -> Vec<(String, PinAngleSum, [f64; 2])> {
         .collect()
 }
 
-/// Returns the links that need an equality to stay parallel to the first link of their drive, with the angle between
-/// the two. Empty if the loops keep all links parallel.
+/// Returns the links that need an equality to stay parallel to the first link of their drive, or to the base, with the
+/// angle between the two. Empty if the loops keep all links parallel.
 pub(crate) fn parallel(machine: &Machine) -> Vec<(usize, PinAngleSum)> {
     let parts = machine.resolved_links();
-    if parts.len() == machine.drives() + 2 * machine.loops().len() {
+    if machine.ground().is_none() && parts.len() == machine.drives() + 2 * machine.loops().len() {
         return Vec::new();
     }
     let first = |k: usize| parts.iter().position(|part| part.drive == k);
     let of = |j: usize| {
+        if machine.drive_of_link(j).is_none() {
+            return Some((j, PinAngleSum::between(machine, None, j)));
+        }
         let first = first(parts[j].drive).filter(|first| *first != j)?;
         Some((j, PinAngleSum::between(machine, Some(first), j)))
     };

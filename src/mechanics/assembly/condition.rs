@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | m_c, o, h_c | mass that a block carries, its centre of mass from the end effector: in the plane, and along z | kg, m |
 //! | p_k | weights of the end effector: it is at Σ p_k e(q_k) | m |
-//! | C_0k | coupling of a body that keeps its orientation: m_c conj(o) p_k | kg m² |
+//! | C_0k | coupling of bodies that keep their orientation: own links of the block, and m_c conj(o) p_k | kg m² |
 //!
 //! # Conditions
 //! A block that holds its b puts nothing on the base if, with the carried mass at its end effector, g_k = 0 (7), C_kl = 0
@@ -58,6 +58,8 @@ pub struct BlockConditions {
     pub coupling: f64,
     /// Largest |C_0k|, kg m².
     pub ground: f64,
+    /// The same of its own links that keep their orientation alone, kg m².
+    pub own_ground: f64,
     /// Largest |Σ m h a_k| about the height of the centre of mass, kg m².
     pub tilt: f64,
 }
@@ -69,7 +71,7 @@ pub enum Reacting {
     Force,
     /// Its mass matrix depends on the pose.
     Coupling,
-    /// What it carries is off its end effector.
+    /// What it carries is off its end effector, or its own links that keep their orientation are not balanced.
     Ground,
     /// Its bodies are at different heights.
     Tilt,
@@ -98,9 +100,13 @@ impl Assembly {
     fn moment_above(&self, block: usize) -> Vector3<f64> {
         let of = |i: usize| {
             let own = &self.blocks()[i];
-            let up = own.mount.axes.column(2).into_owned();
             let above = own.platform_height() * (self.mass_above(i) - own.inertia.mass());
-            self.mass_above(i) * own.mount.at + up * (own.axial.total() + above) + self.moment_above(i)
+            // Links that keep their orientation hold their centre of mass off the base pin.
+            let ground = if own.inertia.grounded { Some(own.inertia.drives) } else { None };
+            let carried = self.mass_above(i) - own.inertia.mass();
+            let fixed = ground.map_or_else(Vector::default, |n| own.inertia.g[n] + carried * own.inertia.end_effector[n]);
+            let beside = own.mount.in_space(fixed, own.axial.total() + above);
+            self.mass_above(i) * own.mount.at + beside + self.moment_above(i)
         };
         self.carried_by(Some(block)).map(of).sum()
     }
@@ -133,8 +139,9 @@ impl Assembly {
                 above: if mass > 0.0 { along / mass } else { 0.0 },
             },
             force: inertia.force_residual(),
-            coupling: inertia.invariance_residual(),
-            ground: most(&|k| (beside.conj() * tip[k]).norm()),
+            coupling: Inertia::pairs(inertia.drives).fold(0.0, |most, (k, l)| most.max(inertia.c[k][l].norm())),
+            ground: most(&|k| (inertia.ground_coupling(k) + beside.conj() * tip[k]).norm()),
+            own_ground: inertia.ground_residual(),
             tilt: most(&|k| (weighted[k] - mean * inertia.g[k]).norm()),
             inertia,
         }

@@ -50,7 +50,8 @@ pub struct BaseMotion {
 /// Constants of a machine's inertia out of its plane.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct OutOfPlane {
-    drives: usize,
+    /// Number of drives, and of the ground if links keep their orientation.
+    indices: usize,
     /// Σ m a_k a_l, kg m².
     square: [[Vector; MAX_DRIVES]; MAX_DRIVES],
     /// Σ m h², kg m².
@@ -77,7 +78,7 @@ impl OutOfPlane {
             (payload.mass, payload.inertia, payload.axial, held_by, machine.payload_chain(), payload.transverse());
         let rotors = machine.spec().drives.iter().filter_map(|drive| drive.rotor).map(|rotor| rotor.inertia).sum();
         let mut sum = Self {
-            drives: machine.drives(),
+            indices: machine.drives() + usize::from(machine.ground().is_some()),
             square: [[Vector::default(); MAX_DRIVES]; MAX_DRIVES],
             heights: 0.0,
             mean: 0.0,
@@ -90,8 +91,8 @@ impl OutOfPlane {
             sum.mean += along + across;
             sum.leaning[drive] += Vector::new(across - along, 2.0 * product);
             sum.spin += inertia;
-            for k in 0..sum.drives {
-                for l in 0..sum.drives {
+            for k in 0..sum.indices {
+                for l in 0..sum.indices {
                     sum.square[k][l] += mass * a[k] * a[l];
                 }
             }
@@ -103,7 +104,7 @@ impl OutOfPlane {
     /// kg m².
     pub(super) fn leaning(&self, e: &UnitVectors) -> [Vector; MAX_DRIVES] {
         std::array::from_fn(|k| {
-            let points = (0..self.drives).map(|l| self.square[k][l] * (e[k] * e[l])).sum::<Vector>();
+            let points = (0..self.indices).map(|l| self.square[k][l] * (e[k] * e[l])).sum::<Vector>();
             points + self.leaning[k] * (e[k] * e[k])
         })
     }
@@ -111,15 +112,15 @@ impl OutOfPlane {
     /// Returns the inertia of a block about its mount, kg m², in axes of the base.
     fn about_mount(&self, block: &Block, moving: &MovingBlock) -> Matrix3<f64> {
         let (e, mut polar, mut square) = (&moving.e, 0.0, Vector::default());
-        for k in 0..self.drives {
-            for l in 0..self.drives {
+        for k in 0..self.indices {
+            for l in 0..self.indices {
                 polar += (block.inertia.c[k][l] * (e[k].conj() * e[l])).re;
                 square += self.square[k][l] * (e[k] * e[l]);
             }
         }
         // The tensor of a body that turns by e keeps its mean, and the rest turns by e².
         let mut leaning = Vector::default();
-        for (e, body) in e.iter().zip(&self.leaning).take(self.drives) {
+        for (e, body) in e.iter().zip(&self.leaning).take(self.indices) {
             leaning += body * (e * e);
         }
         let mean = 0.5 * (polar + self.mean) + self.heights;
@@ -128,10 +129,10 @@ impl OutOfPlane {
 
     /// Returns the rate of change of [`about_mount`](Self::about_mount), kg m²/s, with the rates of a state.
     fn change_about_mount(&self, block: &Block, moving: &MovingBlock, qd: &PerDrive) -> Matrix3<f64> {
-        let (e, mut polar, mut leaning) = (&moving.e, 0.0, Vector::default());
-        for k in 0..self.drives {
+        let (e, qd, mut polar, mut leaning) = (&moving.e, qd.padded(), 0.0, Vector::default());
+        for k in 0..self.indices {
             leaning += 2.0 * qd[k] * self.leaning[k] * (e[k] * e[k]);
-            for l in 0..self.drives {
+            for l in 0..self.indices {
                 polar -= (qd[l] - qd[k]) * (block.inertia.c[k][l] * (e[k].conj() * e[l])).im;
                 leaning += (qd[k] + qd[l]) * self.square[k][l] * (e[k] * e[l]);
             }

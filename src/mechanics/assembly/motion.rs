@@ -131,9 +131,16 @@ impl MovingBlock {
         mount[0] += block.mount.at;
         let tip = moving_sum(|k| Vector::new(block.inertia.end_effector[k], 0.0), &e, state);
         let heights = [block.platform_height(), 0.0, 0.0];
+        let mut first = moving_sum(|k| block.inertia.g[k], &e, state);
+        let mut weighted = moving_sum(|k| block.axial.weighted()[k], &e, state);
+        if block.inertia.grounded {
+            let ground = block.inertia.drives;
+            first[0] += block.inertia.g[ground];
+            weighted[0] += block.axial.weighted()[ground];
+        }
         Self {
-            first: moving_sum(|k| block.inertia.g[k], &e, state),
-            weighted: moving_sum(|k| block.axial.weighted()[k], &e, state),
+            first,
+            weighted,
             platform: std::array::from_fn(|i| mount[i] + block.mount.in_space(tip[i], heights[i])),
             e,
             mount,

@@ -160,13 +160,14 @@ pub(super) fn turning_torque(block: &Block, moving: &MovingBlock, state: &BlockS
     let shared = about * about + 0.5 * w.norm_sqr();
     let heights = w * about - Vector::i() * tilting;
     let leaning = block.out_of_plane.leaning(e);
+    let qd = state.qd.padded();
     PerDrive::from_fn(inertia.drives, |k| {
         // D_k, from H whatever the pose.
         let (mut momentum, mut turned) = (inertia.spin[k] + inertia.stator_reaction[k], 0.0);
-        for l in 0..inertia.drives {
+        for l in 0..inertia.indices() {
             let z = inertia.c[k][l] * (e[k].conj() * e[l]);
             momentum += z.re + inertia.rotor_coupling[k][l];
-            turned += z.im * (2.0 * about * state.qd[l] + shared);
+            turned += z.im * (2.0 * about * qd[l] + shared);
         }
         let arm = Vector::i() * block.axial.weighted()[k] * e[k];
         momentum * spinning - turned + 0.5 * (leaning[k].conj() * w * w).im + (arm.conj() * heights).re

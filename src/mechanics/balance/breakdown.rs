@@ -60,7 +60,7 @@ impl Breakdown {
     pub fn of(machine: &Machine) -> Self {
         let masses = masses(machine);
         let inertia = Inertia::of(machine);
-        let terms = Condition::all(machine.drives()).map(|condition| {
+        let terms = Condition::all_of(machine).map(|condition| {
             let residual = condition.residual(&inertia);
             let balanced = residual.norm() <= condition.tolerance(&inertia);
             let parts = masses.iter().map(|(_, mass, a)| condition.of(*mass, a)).collect();

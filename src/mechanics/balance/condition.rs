@@ -16,7 +16,8 @@ use stillbase_settings::number::subscript;
 pub enum Condition {
     /// Force balance (7): the first moment g_k.
     Force(usize),
-    /// Invariance (8): the coupling C_kl, k < l.
+    /// Invariance (8): the coupling C_kl, k < l. If l is the number of drives, that with links that keep their
+    /// orientation.
     Coupling(usize, usize),
 }
 
@@ -26,10 +27,19 @@ impl Condition {
         (0..n).map(Self::Force).chain(Inertia::pairs(n).map(|(k, l)| Self::Coupling(k, l)))
     }
 
-    /// Returns its symbol, with the numbers of its drives, from 1, as subscripts.
-    pub fn symbol(self) -> String {
+    /// Returns the conditions of a machine: those of its drives, then those of each drive with links that keep their
+    /// orientation, if there are any.
+    pub fn all_of(machine: &Machine) -> impl Iterator<Item = Self> {
+        let n = machine.drives();
+        Self::all(n).chain(machine.ground().into_iter().flat_map(move |l| (0..n).map(move |k| Self::Coupling(k, l))))
+    }
+
+    /// Returns its symbol on a machine of some drives, with the numbers of its drives, from 1, as subscripts. 0 is the
+    /// ground.
+    pub fn symbol(self, drives: usize) -> String {
         match self {
             Self::Force(k) => format!("g{}", subscript(k + 1)),
+            Self::Coupling(k, l) if l == drives => format!("C{}{}", subscript(0), subscript(k + 1)),
             Self::Coupling(k, l) => format!("C{}{}", subscript(k + 1), subscript(l + 1)),
         }
     }
@@ -39,6 +49,9 @@ impl Condition {
         let drive = |k: usize| &machine.spec().drives[k].name;
         match self {
             Self::Force(k) => format!("the force balance of drive {}, (7)", drive(k)),
+            Self::Coupling(k, l) if l == machine.drives() => {
+                format!("the coupling of drive {} and links that keep their orientation, (8)", drive(k))
+            }
             Self::Coupling(k, l) => format!("the coupling of drives {} and {}, (8)", drive(k), drive(l)),
         }
     }

@@ -93,7 +93,7 @@ pub enum DesignError {
 
 /// Returns A and k of (9).
 pub fn conditions(machine: &Machine) -> (DMatrix<f64>, DVector<f64>) {
-    let (all, links) = (Condition::all(machine.drives()).collect::<Vec<_>>(), machine.links());
+    let (all, links) = (Condition::all_of(machine).collect::<Vec<_>>(), machine.links());
     let parts = machine.resolved_links();
     let a = DMatrix::from_fn(all.len(), links.len(), |row, j| links[j].mass * all[row].by_moment(&parts[j]));
     // The residual at the present l_c is A l_c − k.
@@ -146,8 +146,7 @@ pub fn design(machine: &Machine, penalty: &[f64]) -> Result<Machine, DesignError
 fn largest_residual(machine: &Machine) -> (String, String) {
     let inertia = Inertia::of(machine);
     let force = !inertia.is_force_balanced();
-    let of_kind =
-        Condition::all(machine.drives()).filter(|condition| matches!(condition, Condition::Force(_)) == force);
+    let of_kind = Condition::all_of(machine).filter(|condition| matches!(condition, Condition::Force(_)) == force);
     let size = |condition: &Condition| condition.residual(&inertia).norm();
     let worst = of_kind.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(Condition::Force(0));
     (worst.name(machine), format!("{:.3e} {}", size(&worst), worst.unit()))

@@ -33,7 +33,7 @@ pub fn over_payloads(
         let payload = spec.payload.mass;
         let inertia = Inertia::of(&Machine::new(spec)?);
         let greatest = |of_force: bool| {
-            let all = Condition::all(machine.drives());
+            let all = Condition::all_of(machine);
             let alike = all.filter(|condition| matches!(condition, Condition::Force(_)) == of_force);
             alike.map(|condition| condition.residual(&inertia).norm()).fold(0.0, f64::max)
         };

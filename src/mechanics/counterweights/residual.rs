@@ -153,7 +153,7 @@ pub(super) fn conditions(
         let reaches = goal.ground && reach(&loaded.inertia) > 0.0;
         let ground = (0..if reaches { 2 } else { 0 }).map(BlockCondition::Ground);
         let tilt = (0..if goal.tilt { n } else { 0 }).map(BlockCondition::Tilt);
-        let own = Condition::all(n).map(BlockCondition::Balance).chain(ground).chain(tilt);
+        let own = Condition::all_of(&own.machine).map(BlockCondition::Balance).chain(ground).chain(tilt);
         all.extend(own.enumerate().map(|(i, condition)| {
             let change = |site: &CounterweightSite| {
                 let [by_w, by_s, by_t] = condition.changes(block, &parts[site.link]);

@@ -57,7 +57,7 @@ pub fn worst_residual_in_assembly(assembly: &Assembly, tolerance: &PlacementTole
 fn worst_with(machine: &Machine, carried: f64, tolerance: &PlacementTolerance) -> WorstResidual {
     let end = machine.end_effector().map(|x| Vector::new(x, 0.0));
     let mut worst = WorstResidual { force: 0.0, coupling: 0.0 };
-    for condition in Condition::all(machine.drives()) {
+    for condition in Condition::all_of(machine) {
         let each = machine.spec().counterweights.iter().filter_map(|weight| {
             let link = machine.spec().link_index(&weight.link)?;
             let part = &machine.resolved_links()[link];

@@ -92,7 +92,7 @@ impl Joints {
                 None => -around.gravity,
             };
             force[j] = root[j] * link.mass + link.first * turn[link.drive];
-            moment[j] = link.second * qdd[link.drive] + cross(link.first * e[link.drive], root[j]);
+            moment[j] = link.second * qdd.padded()[link.drive] + cross(link.first * e[link.drive], root[j]);
             if let Some(along) = link.end_effector {
                 force[j] -= around.force;
                 moment[j] -= along * cross(e[link.drive], around.force);
@@ -165,8 +165,9 @@ impl Joints {
         self.stators.iter().filter(|stator| !stator.before).for_each(|stator| react(stator, &mut moment));
         for (j, link) in links.iter().enumerate() {
             out.forces[link.link] = force[j];
-            if link.driven {
-                out.torque[link.drive] += moment[j];
+            // What holds a link on the base that never turns is no motor.
+            if let Some(torque) = out.torque.get_mut(link.drive).filter(|_| link.driven) {
+                *torque += moment[j];
             }
         }
         for Stator { drive, rotor, .. } in &self.stators {

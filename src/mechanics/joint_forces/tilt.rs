@@ -68,7 +68,7 @@ impl AxialMoments {
         for (m, z, a) in links.chain([held]) {
             total += m * z;
             mass += m;
-            for k in 0..machine.drives() {
+            for k in 0..machine.drives() + usize::from(machine.ground().is_some()) {
                 s[k] += m * z * a[k];
                 g[k] += m * a[k];
             }

@@ -9,7 +9,7 @@ use super::motors::Motors;
 use super::numbers::check_numbers;
 use super::parts::weigh;
 use super::ranges::{LENGTH, PLACE, within};
-use super::spec::{Angle, Attach, Closure, Length, Link, LinkPoint, MachineSpec, PlaceOnLink, Rotor};
+use super::spec::{Angle, Attach, Closure, GROUND, Length, Link, LinkPoint, MachineSpec, PlaceOnLink, Rotor};
 use crate::planar::MAX_DRIVES;
 use stillbase_settings::number::ShortNumber;
 use stillbase_settings::range::{quote_clipped, shortened};
@@ -75,7 +75,7 @@ impl Resolved {
         let loops = closures.map(|(i, c)| resolve_closure(spec, &names, &links, i, c)).collect::<Result<_, _>>()?;
         let end = spec.end_effector.as_ref().ok_or(MachineError::NoEndEffector)?;
         let (end_link, s) = locate(spec, &names, end, &|| KeyPath::new(&[&"end_effector"]))?;
-        let end_effector = links[end_link].point(s);
+        let end_effector = end_effector(spec, &links, end_link, s)?;
         let angles = resolve_angles(spec, &names)?;
         let motors = resolve_motors(spec, &names)?;
         add_pins(spec, &names, &mut links)?;
@@ -105,6 +105,18 @@ impl<'a> Names<'a> {
         named("lump", spec.lumps.iter().map(|lump| lump.name.as_str()).collect())?;
         unique("angle", spec.angles.iter().map(|a| a.name.as_str()))?;
         Ok(Self { drives, links })
+    }
+
+    /// Returns the drive whose orientation a link has, or the number of drives for one that keeps its orientation.
+    fn link_drive(&self, name: &str, place: impl Fn() -> KeyPath) -> Result<usize, MachineError> {
+        match name == GROUND && !self.drives.contains(&name) {
+            true if self.drives.len() < MAX_DRIVES => Ok(self.drives.len()),
+            true => {
+                let want = format!("at most {} beside links with drive = \"{GROUND}\"", MAX_DRIVES - 1);
+                Err(MachineError::Count { what: "drives", count: self.drives.len(), want })
+            }
+            false => self.drive(name, place),
+        }
     }
 
     fn drive(&self, name: &str, place: impl Fn() -> KeyPath) -> Result<usize, MachineError> {
@@ -242,7 +254,7 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
                 });
             }
             let on = &spec.links[parent];
-            let drive = names.drive(&on.drive, || KeyPath::new(&[&"link", &parent, &"drive"]))?;
+            let drive = names.link_drive(&on.drive, || KeyPath::new(&[&"link", &parent, &"drive"]))?;
             root[drive] += f64::from(on.direction) * s;
             at = parent;
         }
@@ -251,7 +263,7 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
             return Err(MachineError::Count { what, count: chain.len(), want });
         }
         parts.push(ResolvedLink {
-            drive: names.drive(&link.drive, || KeyPath::new(&[&"link", &i, &"drive"]))?,
+            drive: names.link_drive(&link.drive, || KeyPath::new(&[&"link", &i, &"drive"]))?,
             sign: f64::from(link.direction),
             length: length_of(spec, i)?,
             root,
@@ -261,6 +273,30 @@ fn resolve(spec: &MachineSpec, names: &Names) -> Result<Vec<ResolvedLink>, Machi
         });
     }
     Ok(parts)
+}
+
+/// Returns the end effector, which has to be a point that turns about B, on a link that follows a drive.
+fn end_effector(spec: &MachineSpec, links: &[ResolvedLink], end: usize, s: f64) -> Result<Chain, MachineError> {
+    let (mut at, ground, link) = (links[end].point(s), spec.drives.len(), quote_clipped(&spec.links[end].name));
+    if ground < MAX_DRIVES {
+        let why = match at[ground].abs() > CLOSURE_TOLERANCE {
+            _ if links[end].drive == ground => format!(
+                "link {link} keeps its orientation: want the point of the link that carries it; what else it holds is a \
+                 part of its own mass"
+            ),
+            true => format!(
+                "it is {} m along x beside where the links from the base pin alone would take it: want a point of links \
+                 that are not carried by a link with drive = \"{GROUND}\"",
+                ShortNumber(at[ground])
+            ),
+            false => String::new(),
+        };
+        if !why.is_empty() {
+            return Err(MachineError::Part { place: KeyPath::new(&[&"end_effector"]), why });
+        }
+        at[ground] = 0.0;
+    }
+    Ok(at)
 }
 
 fn resolve_closure(
@@ -273,9 +309,13 @@ fn resolve_closure(
     let (a, s) = locate(spec, names, &closure.a, &|| KeyPath::new(&[&"closure", &i, &"a"]))?;
     let (b, t) = locate(spec, names, &closure.b, &|| KeyPath::new(&[&"closure", &i, &"b"]))?;
     let (p, r) = (parts[a].point(s), parts[b].point(t));
-    let gap: Vec<String> = (0..spec.drives.len())
+    let along = |k: usize| match spec.drives.get(k) {
+        Some(drive) => format!("along drive {}", quote_clipped(&drive.name)),
+        None => "along x of the base".to_owned(),
+    };
+    let gap: Vec<String> = (0..MAX_DRIVES)
         .filter(|&k| (p[k] - r[k]).abs() > CLOSURE_TOLERANCE)
-        .map(|k| format!("{:.6} m along drive {}", p[k] - r[k], quote_clipped(&spec.drives[k].name)))
+        .map(|k| format!("{:.6} m {}", p[k] - r[k], along(k)))
         .collect();
     if gap.is_empty() {
         return Ok(ResolvedClosure { a, at_a: s, b, at_b: t });

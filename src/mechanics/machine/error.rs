@@ -157,6 +157,18 @@ pub enum MachineError {
         /// The moments, and which would do.
         why: String,
     },
+    /// A machine with links that keep their orientation, where only others are taken.
+    #[error(
+        "link {:?} keeps its orientation (drive = \"ground\"): want a machine all of whose links follow drives, as {what} \
+         take no other",
+        quote_clipped(link)
+    )]
+    Ground {
+        /// The first such link.
+        link: String,
+        /// What takes no such machine, in the plural.
+        what: &'static str,
+    },
     /// A number of a link that is neither stated nor follows from parts.
     #[error(
         "{} is missing: want a number, or a [[part]] or [[lump]] of link {:?} from which it follows",

@@ -11,6 +11,11 @@
 //! | r | a rotor of inertia J turns at r·q̇: r_k = N, and r_l = 1 − N if its stator is on links of drive l | |
 //! | H | mass matrix: C, J_k on its diagonal, and J r rᵀ of every rotor | kg m² |
 //! | D | angular momentum about B is D q̇: C_kk + J_k + J r_k where all C_kl vanish | kg m² |
+//! | 0 | the ground, a drive that never turns: index n of g, C and J, if links keep their orientation | |
+//!
+//! # Links that keep their orientation
+//! They follow a drive 0 with e = 1. Their constant g_0 moves nothing. C_0k e_k adds Re C_0k e_k to D_k, but nothing to H,
+//! since drive 0 has no rate. So C_0k = 0 is a condition of a constant D, as C_kl = 0 is.
 
 use super::{Chain, Machine, Motors};
 use crate::planar::{MAX_DRIVES, PerDrive, Vector};
@@ -22,6 +27,8 @@ pub struct Inertia {
     pub motors: Motors,
     /// Number of drives n.
     pub drives: usize,
+    /// Whether links keep their orientation. Index n then stands for the ground in g, C and J.
+    pub grounded: bool,
     /// Total mass with the payload, kg.
     pub mass: f64,
     /// First moments g_k of the drives, kg m.
@@ -53,6 +60,7 @@ impl Inertia {
     /// Computes the constants of a machine: sums over the links, the payload and the rotors.
     pub fn of(machine: &Machine) -> Self {
         let mut sum = Self::massless(machine.drives(), *machine.motors(), *machine.end_effector());
+        sum.grounded = machine.ground().is_some();
         for (j, (link, part)) in machine.links().iter().zip(machine.resolved_links()).enumerate() {
             sum.add(link.mass, link.inertia, part.drive, &machine.com_chain(j));
         }
@@ -72,6 +80,7 @@ impl Inertia {
         let zero = Vector::new(0.0, 0.0);
         Self {
             drives,
+            grounded: false,
             mass: 0.0,
             g: [zero; MAX_DRIVES],
             c: [[zero; MAX_DRIVES]; MAX_DRIVES],
@@ -132,9 +141,9 @@ impl Inertia {
     pub fn add(&mut self, mass: f64, inertia: f64, drive: usize, a: &[Vector; MAX_DRIVES]) {
         self.mass += mass;
         self.spin[drive] += inertia;
-        for k in 0..self.drives {
+        for k in 0..self.indices() {
             self.g[k] += mass * a[k];
-            for l in 0..self.drives {
+            for l in 0..self.indices() {
                 self.c[k][l] += mass * a[k].conj() * a[l];
             }
         }
@@ -143,6 +152,21 @@ impl Inertia {
     /// Number of drives.
     pub fn drives(&self) -> usize {
         self.drives
+    }
+
+    /// Number of drives, and of the ground if links keep their orientation.
+    pub(crate) fn indices(&self) -> usize {
+        self.drives + usize::from(self.grounded)
+    }
+
+    /// Coupling C_0k with links that keep their orientation, kg m²; 0 if there are none.
+    pub fn ground_coupling(&self, k: usize) -> Vector {
+        if self.grounded { self.c[self.drives][k] } else { Vector::default() }
+    }
+
+    /// Returns the largest |C_0k|, kg m²: 0 for an angular momentum D q̇ with constant D.
+    pub fn ground_residual(&self) -> f64 {
+        (0..self.drives).fold(0.0, |m, k| m.max(self.ground_coupling(k).norm()))
     }
 
     /// Total mass M, kg.
@@ -259,9 +283,10 @@ impl Inertia {
         self.g[..self.drives].iter().fold(0.0, |m, g| m.max(g.norm()))
     }
 
-    /// Returns the largest |C_kl|, k ≠ l, kg m²: 0 for an invariant mass matrix, (8).
+    /// Returns the largest |C_kl|, k ≠ l, kg m², those with the ground included: 0 for an invariant mass matrix and a
+    /// constant D, (8).
     pub fn invariance_residual(&self) -> f64 {
-        Self::pairs(self.drives).fold(0.0, |m, (k, l)| m.max(self.c[k][l].norm()))
+        Self::pairs(self.indices()).fold(0.0, |m, (k, l)| m.max(self.c[k][l].norm()))
     }
 
     /// Returns the largest |C_kl|, k ≠ l, as a fraction of Σ H_kk: a measure of how the mass matrix depends on the
@@ -276,7 +301,7 @@ impl Inertia {
         self.force_residual() <= self.first_moment_tolerance()
     }
 
-    /// Returns whether the mass matrix is the same in every pose: every |C_kl|, k ≠ l, is at most [`BALANCE_TOLERANCE`]
+    /// Returns whether mass matrix and D are the same in every pose: every |C_kl|, k ≠ l, is at most [`BALANCE_TOLERANCE`]
     /// Σ H_kk.
     pub fn is_invariant(&self) -> bool {
         self.invariance_residual() <= self.coupling_tolerance()

@@ -54,6 +54,8 @@ pub use parts::{
 pub(crate) use parts::{sum_of, weigh};
 pub use ranges::{ANGLE, MAX_ANGLE};
 pub use set::{MACHINE_TABLES, is_of_machine};
-pub use spec::{Angle, Attach, Closure, Drive, Length, Link, LinkPoint, MachineSpec, Payload, PlaceOnLink, Rotor};
+pub use spec::{
+    Angle, Attach, Closure, Drive, GROUND, Length, Link, LinkPoint, MachineSpec, Payload, PlaceOnLink, Rotor,
+};
 pub use transverse::TransverseInertia;
 pub use words::{MachineWords, SMALLEST, pattern_of};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::Chain;
 use super::check::place_on_link;
-use super::error::KeyPath;
+use super::error::{KeyPath, MachineError};
 use super::motors::Motors;
 use super::parts::{PartBody, PartSource, PlaneBody, sum_of};
 use super::spec::{Link, MachineSpec, PlaceOnLink};
@@ -32,7 +32,7 @@ pub(super) struct MachineData {
 /// Quantities derived from the specification of a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedLink {
-    /// The drive whose orientation it has, counted from 0.
+    /// The drive whose orientation it has, counted from 0. The number of drives stands for the ground, which never turns.
     pub drive: usize,
     /// Direction of the link: +1 along e(q), −1 against it.
     pub sign: f64,
@@ -126,6 +126,27 @@ impl Machine {
     /// Number of drives n.
     pub fn drives(&self) -> usize {
         self.0.spec.drives.len()
+    }
+
+    /// Returns the index that stands for the ground if links keep their orientation: the number of drives, at which unit
+    /// vectors are 1 and rates 0. `None` if every link follows a drive.
+    pub fn ground(&self) -> Option<usize> {
+        let n = self.drives();
+        self.0.parts.iter().any(|part| part.drive == n).then_some(n)
+    }
+
+    /// Checks that all links follow drives; `what` takes no other machines, in the plural.
+    ///
+    /// # Errors
+    /// If a link keeps its orientation.
+    pub fn check_all_turn(&self, what: &'static str) -> Result<(), MachineError> {
+        let ground = (0..self.links().len()).find(|j| self.drive_of_link(*j).is_none());
+        ground.map_or(Ok(()), |j| Err(MachineError::Ground { link: self.links()[j].name.clone(), what }))
+    }
+
+    /// Returns the drive that a link follows; `None` if it keeps its orientation.
+    pub fn drive_of_link(&self, j: usize) -> Option<usize> {
+        Some(self.0.parts[j].drive).filter(|drive| *drive < self.drives())
     }
 
     /// Returns whether the drives keep degrees of freedom when the end effector is held in place.

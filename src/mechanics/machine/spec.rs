@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::counterweight::Counterweight;
 use super::parts::{DerivedNumbers, LinkInFile, Lump, Material, Part};
 
+/// The word by which a link follows no drive but keeps its orientation, along x of the base.
+pub const GROUND: &str = "ground";
+
 /// The content of a machine file. [`Machine::new`](super::Machine::new) checks it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -181,7 +184,7 @@ impl Default for Rotor {
 pub struct Link {
     /// Its name.
     pub name: String,
-    /// The drive whose orientation it has.
+    /// The drive whose orientation it has; [`GROUND`] for a link that is carried along and never turns.
     pub drive: String,
     /// The point to which its root is pinned.
     pub attach: Attach,

@@ -185,10 +185,10 @@ impl PartialEq for PerDrive {
 pub struct DriveAngles(pub PerDrive);
 
 impl DriveAngles {
-    /// e(q_k) of every drive; zero beyond the last.
+    /// e(q_k) of every drive; beyond the last that of the ground, 1.
     #[inline]
     pub fn units(&self) -> UnitVectors {
-        let mut e = [Vector::new(0.0, 0.0); MAX_DRIVES];
+        let mut e = [GROUND_UNIT; MAX_DRIVES];
         for (e, &q) in e.iter_mut().zip(self.0.iter()) {
             *e = unit(q);
         }
@@ -209,6 +209,9 @@ impl Deref for DriveAngles {
         &self.0
     }
 }
+
+/// Unit vector of links that keep their orientation.
+pub const GROUND_UNIT: Vector = Vector::new(1.0, 0.0);
 
 /// The unit vectors e(q_k): the only trigonometric functions that the dynamics needs.
 pub type UnitVectors = [Vector; MAX_DRIVES];

@@ -91,8 +91,12 @@ impl TurnForm {
 impl From<&Inertia> for MomentumModel {
     /// Returns the angular momentum about the base pin of a fixed base.
     fn from(arm: &Inertia) -> Self {
-        let (base, directions) = ([Vector::default(); MAX_DRIVES], [Vector::new(1.0, 0.0); MAX_DRIVES]);
-        Self { arm: arm.clone(), base, tip: arm.end_effector, directions, origin: Vector::default(), floating: None }
+        let directions = [Vector::new(1.0, 0.0); MAX_DRIVES];
+        // Links that keep their orientation are beside the base here, not in the arm.
+        let base = std::array::from_fn(|k| if k < arm.drives { arm.ground_coupling(k) } else { Vector::default() });
+        let mut arm = arm.clone();
+        arm.grounded = false;
+        Self { base, tip: arm.end_effector, arm, directions, origin: Vector::default(), floating: None }
     }
 }
 
@@ -101,12 +105,18 @@ impl MomentumModel {
     /// and motions start at the pose `start`.
     pub fn floating(arm: &Inertia, base: &FloatingBase, frame: TipFrame, start: &DriveAngles) -> Self {
         let whole = base.mass + arm.mass;
+        let n = arm.drives;
+        let (still, still_inertia) = match arm.grounded {
+            true => (arm.g[n], arm.c[n][n].re + arm.spin[n]),
+            false => (Vector::default(), 0.0),
+        };
+        let first = base.mass * base.com + still;
         let mut own = Self::from(arm);
         for k in 0..arm.drives {
             for l in 0..arm.drives {
                 own.arm.c[k][l] -= arm.g[k].conj() * arm.g[l] / whole;
             }
-            own.base[k] = -(base.mass * base.com).conj() * arm.g[k] / whole;
+            own.base[k] -= first.conj() * arm.g[k] / whole;
             if frame == TipFrame::Space {
                 let coefficient = arm.end_effector[k] - arm.g[k] / whole;
                 own.tip[k] = coefficient.norm();
@@ -115,12 +125,8 @@ impl MomentumModel {
                 }
             }
         }
-        let square = base.com.norm_sqr();
-        own.floating = Some(Floating {
-            inertia: base.inertia + square * base.mass * arm.mass / whole,
-            centre: base.mass * base.com / whole,
-            frame,
-        });
+        let about_pin = base.inertia + base.mass * base.com.norm_sqr() + still_inertia;
+        own.floating = Some(Floating { inertia: about_pin - first.norm_sqr() / whole, centre: first / whole, frame });
         own.origin = end_effector(&arm.end_effector, &start.units()) - own.place(start);
         own
     }

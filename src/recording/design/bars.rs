@@ -33,8 +33,7 @@ impl Bars {
         let slots = machine.links().len() + 1;
         let mut all = Vec::new();
         for (is_force, name) in [(true, "force"), (false, "coupling")] {
-            let lines =
-                Condition::all(machine.drives()).filter(|c| matches!(c, Condition::Force(_)) == is_force).count();
+            let lines = Condition::all_of(machine).filter(|c| matches!(c, Condition::Force(_)) == is_force).count();
             if lines == 0 {
                 continue;
             }

@@ -82,11 +82,10 @@ pub(super) fn links(machine: &Machine) -> String {
         heads.extend(sizes.iter().map(String::as_str));
     }
     let mut rows = Vec::new();
-    for (link, part) in spec.links.iter().zip(machine.resolved_links()) {
-        let drive = &spec.drives[part.drive].name;
+    for link in &spec.links {
         let mut own = vec![
             cell(&link.name, MAX_NAME_CHARS),
-            cell(drive, MAX_NAME_CHARS),
+            cell(&link.drive, MAX_NAME_CHARS),
             signed(link.mass, 3),
             signed(link.com, 4),
         ];
@@ -124,7 +123,8 @@ pub(super) fn links(machine: &Machine) -> String {
 /// that of a lump, and the residual.
 pub(super) fn balance(machine: &Machine, breakdown: &Breakdown) -> String {
     let terms = &breakdown.terms;
-    let heads = terms.iter().map(|term| format!("{} {}", term.condition.symbol(), term.condition.unit()));
+    let heads =
+        terms.iter().map(|term| format!("{} {}", term.condition.symbol(machine.drives()), term.condition.unit()));
     let heads: Vec<String> = ["link".to_owned()].into_iter().chain(heads).collect();
     let line = |name: String, of: &dyn Fn(&BalanceTerm) -> Vector| {
         let parts = terms.iter().map(|term| match complex(of(term)) {

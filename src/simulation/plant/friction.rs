@@ -101,10 +101,13 @@ impl Contacts {
         let bearings = list.len();
         if friction.pin_viscous > 0.0 || friction.pin_coulomb > 0.0 {
             let pins = pins(machine);
-            list.extend(Inertia::pairs(n).filter_map(|(k, l)| {
+            // Pins on links that keep their orientation turn against the base.
+            let indices = n + usize::from(machine.ground().is_some());
+            list.extend(Inertia::pairs(indices).filter_map(|(k, l)| {
                 let count = pins.iter().filter(|pair| **pair == (k, l) || **pair == (l, k)).count() as f64;
                 let (viscous, coulomb) = (count * friction.pin_viscous, count * friction.pin_coulomb);
-                (count > 0.0).then_some(Contact { plus: l, minus: k, viscous, coulomb, pins: count })
+                let (plus, minus) = if l == n { (k, base.unwrap_or(n)) } else { (l, k) };
+                (count > 0.0).then_some(Contact { plus, minus, viscous, coulomb, pins: count })
             }));
         }
         Self { list, bearings }

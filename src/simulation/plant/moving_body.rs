@@ -89,6 +89,11 @@ impl MovingBody {
                 base,
             });
         }
+        if arm.grounded {
+            let why = "it has links with drive = \"ground\", which are simulated on a fixed base, or as a block of an \
+                       assembly: want base.kind = fixed";
+            return Err(MachineError::Syntax(format!("{} on a base that moves: {why}", machine.name())));
+        }
         let FreeBody { rotating, mass, base_chain, .. } = FreeBody::of(&arm, &base.body())?;
         arm.turn_base();
         let (rho, g) = (base.body().com, rotating.g);
@@ -238,10 +243,9 @@ impl MovingBody {
 
     /// Returns the potential energy of weight and springs, J.
     pub fn potential(&self, x: &Slope) -> f64 {
-        let n = self.arm.drives;
         let weight = |g: Vector| -dot(self.around.gravity, g);
         if !self.moves {
-            return weight((0..n).map(|k| self.arm.g[k] * x.e[k]).sum());
+            return weight(stillbase_mechanics::dynamics::first_moment(&self.arm, &x.e));
         }
         let (lever, _) = self.seen(&self.base_chain, &x.e, &x.qd);
         let Support { stiffness: [kx, ky, kt], preload: (force, moment), .. } = self.support;
@@ -368,7 +372,9 @@ impl MovingBody {
 
     /// Returns the approximate reduced inertia of a contact, kg m².
     pub fn reduced_inertia(&self, i: usize) -> f64 {
-        self.contacts.reduced_inertia(i, |k| self.rotating.c[k][k].re + self.rotating.spin[k])
+        let of = |k: usize| self.rotating.c[k][k].re + self.rotating.spin[k];
+        // The ground, against which pins of links that keep their orientation turn, does not move.
+        self.contacts.reduced_inertia(i, |k| if k < self.rotating.drives { of(k) } else { f64::INFINITY })
     }
 
     /// Returns a state in which stuck contacts have a sliding rate of zero to rounding.

@@ -191,7 +191,7 @@ impl<'a> Reactions<'a> {
         let wrench = dynamics::base_wrench(self.inertia, &self.e, &state.qd, &state.qdd, &around).total();
         let bodies = self.bodies;
         let weight = bodies.each(|mass| mass.kilograms * cross(self.motion.place(mass), around.gravity));
-        let spin = bodies.each(|mass| -mass.inertia * self.state.qdd[mass.drive]);
+        let spin = bodies.each(|mass| -mass.inertia * self.state.qdd.get(mass.drive).copied().unwrap_or(0.0));
         let path = bodies.each(|mass| -mass.kilograms * cross(self.motion.place(mass), self.motion.acceleration(mass)));
         let size = |mass: &BodyMass| {
             let moves = self.motion.acceleration(mass).norm() + around.gravity.norm();
@@ -219,7 +219,7 @@ impl<'a> Reactions<'a> {
 
     pub fn angular_momentum(&self) -> Equation {
         let bodies = self.bodies;
-        let spin = bodies.each(|mass| mass.inertia * self.state.qd[mass.drive]);
+        let spin = bodies.each(|mass| mass.inertia * self.state.qd.get(mass.drive).copied().unwrap_or(0.0));
         let path = bodies.each(|mass| mass.kilograms * cross(self.motion.place(mass), self.motion.velocity(mass)));
         let size =
             |mass: &BodyMass| mass.kilograms * self.motion.place(mass).norm() * self.motion.velocity(mass).norm();

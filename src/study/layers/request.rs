@@ -108,6 +108,7 @@ impl LayersRequest {
 
     fn contacts(&self, task: Option<&TaskPoses>) -> Result<(Solids, Vec<Contact>), NoLayers> {
         let (machine, cut) = (&self.machine, &self.cut);
+        machine.check_all_turn("layers")?;
         cut.check(machine)?;
         let solids = Solids::of(machine, cut);
         let range = PoseRange::of(machine);

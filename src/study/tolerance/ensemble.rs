@@ -146,6 +146,7 @@ impl Ensemble {
         spreads: &BTreeMap<String, Spread>,
         seed: u64,
     ) -> Result<Self, ToleranceError> {
+        machine.check_all_turn("tolerances").map_err(ToleranceError::Machine)?;
         let (n, parameters, instants) = (machine.drives(), parameters(machine, spreads)?, instants.max(1));
         let bodies = constants::bodies(machine, &parameters).map_err(ToleranceError::Machine)?;
         let moments = Moments::of(n, &bodies, &parameters);

@@ -1,5 +1,6 @@
 //! Errors in the evaluation of measurements.
 
+use stillbase_mechanics::machine::MachineError;
 use thiserror::Error;
 
 use stillbase_settings::number::{counted, fixed, significant};
@@ -7,6 +8,9 @@ use stillbase_settings::number::{counted, fixed, significant};
 /// Reason that a measurement cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TrimError {
+    /// The machine has links that keep their orientation.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
     /// The number of measured drives differs from that of the machine.
     #[error("angles of {}: want those of all {want} of the machine", counted(got, "drive"))]
     Drives {

@@ -93,6 +93,7 @@ impl Regressor {
         recording: &MeasurementSet,
         angles_only: bool,
     ) -> Result<Self, TrimError> {
+        machine.check_all_turn("trims")?;
         recording.check(machine.drives())?;
         let mut rows = match recording.has_accelerations() && !angles_only {
             true => Self::of_samples(machine, recording),

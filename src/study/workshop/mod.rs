@@ -98,17 +98,19 @@ pub struct Unsettled {
     pub condition: Condition,
     /// Its change, kg m or kg m².
     pub change: f64,
+    /// Number of drives of the machine.
+    pub drives: usize,
 }
 
 impl fmt::Display for Unsettled {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { condition, change } = self;
+        let Self { condition, change, drives } = self;
         let equation = if matches!(condition, Condition::Force(_)) { "(7)" } else { "(8)" };
         write!(
             f,
             "after {MAX_ROUNDS} rounds, new arms for the discs still change {} of {equation} by {change:.1e} {}: want \
              lighter bars, or a smaller distance of counterweights from the axes",
-            condition.symbol(),
+            condition.symbol(*drives),
             condition.unit()
         )
     }

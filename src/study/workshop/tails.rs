@@ -357,9 +357,9 @@ fn most_changed(machine: &Machine, other: &Machine) -> Option<Unsettled> {
     let (inertia, new) = (Inertia::of(machine), Inertia::of(other));
     let change = |condition: &Condition| (condition.residual(&new) - condition.residual(&inertia)).norm();
     let relative = |condition: &Condition| change(condition) / condition.tolerance(&new);
-    let all = Condition::all(machine.drives());
+    let all = Condition::all_of(machine);
     let most = all.max_by(|a, b| relative(a).total_cmp(&relative(b)))?;
-    (relative(&most) > SETTLED).then(|| Unsettled { condition: most, change: change(&most) })
+    (relative(&most) > SETTLED).then(|| Unsettled { condition: most, change: change(&most), drives: machine.drives() })
 }
 
 /// Returns a machine with arms for the discs beside its bars, which reach over `reach`, m, the feet of their arms, and the

@@ -123,7 +123,7 @@ impl<'a> Problem<'a> {
             one.parameter.set(&mut from, one.from);
         }
         let (start, scale) = (Inertia::of(&Machine::new(from.clone()).map_err(of_machine)?), Inertia::of(machine));
-        let conditions: Vec<Condition> = Condition::all(machine.drives()).collect();
+        let conditions: Vec<Condition> = Condition::all_of(machine).collect();
         let more = |i: usize| beyond.get(i).copied().unwrap_or_default();
         let beyond = (0..conditions.len()).map(more).collect();
         let mut problem = Self { machine, request, from, conditions, beyond, balance: Vec::new() };

@@ -35,6 +35,8 @@ fn off(bar: &Bar, q: &DriveAngles, at: Vector) -> f64 {
 
 /// Picks a link for rotation.
 pub fn grip(link: usize, bar: &Bar, map: &PlaneMap, shown: &DrawnFrame<'_>, pointer: &Pointer) -> Option<Pick> {
+    // No drive turns a link that keeps its orientation.
+    shown.frame.q_reference.get(bar.drive)?;
     let at = place(bar, shown, pointer)?;
     // Actual, not reference angles: the user picks the link at its drawn position.
     let angle = off(bar, &relative(shown.frame), at);

@@ -130,6 +130,7 @@ impl OrbitMotion {
     /// # Errors
     /// If a signal is missing, has another unit, or is not a number throughout.
     pub fn of(machine: &Machine, table: &SignalTable) -> Result<Self, TrimError> {
+        machine.check_all_turn("trims")?;
         let column = |path: String, units: &'static [(&'static str, f64)]| -> Result<Vec<f64>, TrimError> {
             let Some(column) = table.column(&path) else { return Err(TrimError::Signal { path }) };
             let unit = Some(column.unit.as_str()).filter(|unit| !unit.is_empty()).unwrap_or(units[0].0);
