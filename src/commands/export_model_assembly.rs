@@ -10,8 +10,8 @@ use stillbase_session::assembly::{AssemblyBase, AssemblyScenario};
 use stillbase_settings::range::quote_clipped;
 use stillbase_settings::text::shell_word;
 
-use super::export_model::{ExportModelArguments, ModelBase, Written};
 use super::exit::print_message;
+use super::export_model::{ExportModelArguments, ModelBase, Written};
 use super::failure::Failure;
 use super::input::{MachineArgument, Settings, assembly_scenario};
 use super::output::write_file;

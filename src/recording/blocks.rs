@@ -132,8 +132,8 @@ impl RecordedBlocks {
         options: &ViewOptions,
         is_last: bool,
     ) -> Result<(), StoreError> {
-        let Some(shared) = run.shared() else { return Ok(()) };
-        let (now, whole) = (shared.now(), WholeFrame::of(run, frame));
+        let Some(shared_run) = run.shared() else { return Ok(()) };
+        let (now, whole) = (shared_run.now(), WholeFrame::of(run, frame));
         if self.stages.is_none() {
             self.stages = BlockStages::of(run, led);
             self.draw_body(store)?;
@@ -159,7 +159,8 @@ impl RecordedBlocks {
         if let (Some(stages), Some(shared)) = (&self.stages, &frame.shared) {
             self.base.rows.push(at, Placed::of(&shared.origin, &shared.attitude.0.to_rotation_matrix().into_inner()));
             let mut scene = Scene::new(self.palette.background, Arc::default());
-            stages.reactions(&mut scene, shared, &self.palette);
+            let others: Vec<(usize, Frame)> = shared_run.frames().collect();
+            stages.in_space(&mut scene, frame, others.iter().map(|(i, frame)| (*i, frame)), &self.palette);
             self.loads.draw(store, (at, Some(at)), &scene)?;
         }
         Ok(())

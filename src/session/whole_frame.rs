@@ -38,8 +38,5 @@ impl<'a> WholeFrame<'a> {
 pub fn signals_of_whole(scenario: &Scenario) -> Vec<Signal> {
     let Some(block) = &scenario.assembly else { return signals(&scenario.machine) };
     let blocks = block.scenario.assembly.blocks().iter();
-    signals_of_assembly(
-        blocks.map(|block| (block.name.as_str(), &block.machine)),
-        block.scenario.base.moves(),
-    )
+    signals_of_assembly(blocks.map(|block| (block.name.as_str(), &block.machine)), block.scenario.base.moves())
 }

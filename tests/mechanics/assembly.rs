@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use stillbase::mechanics::assembly::{
-    Assembly, AssemblySpec, Attitude, BlockState, Momentum, Reacting, SpatialBase, SpatialWrench, parse,
+    Assembly, AssemblySpec, Attitude, BlockState, Momentum, Reacting, SpatialBase, SpatialWrench, builtin_assemblies,
+    parse,
 };
 use stillbase::mechanics::machine::{Counterweight, FileError, Machine, named, parse as parse_machine};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
@@ -481,4 +482,27 @@ fn wrong_files_are_told_where_and_what_would_be_right() {
     }
     let spec: AssemblySpec = toml::from_str(&format!("{head}{}", block("a", ""))).expect("a table");
     assert_eq!(Assembly::new(&spec, &named).expect("an assembly").blocks()[0].name, "a");
+}
+
+/// A frame that keeps its orientation on a carried block is off its pin for the carrier.
+#[test]
+fn a_frame_of_a_carried_block_is_beside_the_pin() {
+    let found = builtin_assemblies().iter().find(|own| own.name == "carrier-and-wrist").expect("built in").clone();
+    let framed = found.with_machines(|name, machine| {
+        let mut spec = machine.spec().clone();
+        if name == "wrist" {
+            let mut frame = spec.links[0].clone();
+            (frame.name, frame.drive, frame.mass) = ("frame".into(), "ground".into(), 0.05);
+            (frame.com, frame.inertia) = (0.1, 1e-4);
+            spec.links.push(frame);
+        }
+        Machine::new(spec)
+    });
+    let framed = framed.expect("an assembly");
+    let conditions = framed.conditions(0);
+    // The wrist's x lies along the carrier's axis: the frame is above the pin, not beside it.
+    assert!((conditions.carried.mass - 0.47).abs() < 1e-12);
+    assert!((conditions.carried.above - 0.05 * 0.1 / 0.47).abs() < 1e-12, "{:?}", conditions.carried);
+    assert!(conditions.carried.beside.norm() < 1e-12);
+    assert!(conditions.reasons().any(|why| why == Reacting::Tilt));
 }

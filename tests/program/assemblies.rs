@@ -279,8 +279,8 @@ fn design_balances_all_blocks_together() {
     near(&json!(points[0][0]), &found["added_mass"], 2e-6, "the lightest");
     near(&json!(points[3][1]), &json!(inertia(&quick)), 2e-6, "the one of least inertia");
     // Torques are those of the task; the blocks of another do not fit.
-    let torque = object(&[&ask[..], &["--objective", "torque", "--task", "four-freedoms"]].concat());
-    let light = object(&[&ask[..], &["--task", "four-freedoms"]].concat());
+    let torque = object(&[&ask[..], &["--objective", "torque", "--task", "wrist-across"]].concat());
+    let light = object(&[&ask[..], &["--task", "wrist-across"]].concat());
     assert!(torque["torque"].as_f64() < light["torque"].as_f64());
     let said = prints(&ask);
     for words in ["block wrist · wrist", "silent: nothing reaches the base", "counterweight on link", "within"] {

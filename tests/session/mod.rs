@@ -4,6 +4,7 @@ mod afloat;
 mod any_drives;
 mod around;
 mod assembly;
+mod assembly_bases;
 mod bounds;
 mod branches;
 mod cases;

@@ -40,6 +40,7 @@ enum Act {
 fn name(edit: &Edit) -> String {
     match edit {
         Edit::DragTarget { .. } => "drag-target".into(),
+        Edit::DragBlocks { .. } => "drag-blocks".into(),
         Edit::DragAngles { .. } => "drag-angles".into(),
         Edit::PullLink { .. } => "pull-link".into(),
         Edit::SlideB { .. } => "slide-b".into(),

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use stillbase::mechanics::assembly::{Assembly, BlockState, MAX_BLOCKS, builtin_assemblies};
 use stillbase::mechanics::planar::{DriveAngles, PerDrive};
 use stillbase::session::assembly::{AssemblyFrame, AssemblyScenario};
+use stillbase::session::{Edit, Session};
 
 fn builtin(name: &str) -> Assembly {
     builtin_assemblies().iter().find(|own| own.name == name).expect("built in").clone()
@@ -257,4 +258,56 @@ fn proposals_work_as_printed() {
         let why = refused(text);
         assert!(why.contains(words), "{text}{why}");
     }
+}
+
+/// Led in space by hand, the end effector comes to the place, nothing reaches the base, and the session is the same when it
+/// is saved, opened and led from the other block.
+#[test]
+fn an_end_effector_is_led_in_space_by_hand() {
+    let whole = scenario(&builtin("carrier-and-arm"), "to = [0.45, 0.42, 0.1]\ntime = 1.0\n").expect("a path");
+    let mut session = Session::open(whole.leading(1)).expect("it opens");
+    session.seek(session.length());
+    for place in [[0.40, 0.50, 0.12], [0.47, 0.38, 0.07]] {
+        let edit = session.edit_on_base(place).expect("a way");
+        assert!(matches!(&edit, Edit::DragBlocks { targets } if targets.len() == 2), "{edit:?}");
+        let undone = session.run().inverse_of(&edit).expect("an inverse");
+        assert!(matches!(undone, Edit::DragBlocks { .. }));
+        session.apply(edit).expect("led by hand");
+        session.play();
+        session.tick(4000);
+        let tip = Vector3::from(session.tip_on_base().expect("a tip"));
+        assert!((tip - Vector3::from(place)).norm() < 1e-5, "{tip} {place:?}");
+    }
+    assert_eq!(session.frame().shared.expect("shared").silent(), [true; 6]);
+    // From one step to the next the tip moves in the plane that is dragged in, and the carrier goes along.
+    let at = session.frame().end_effector;
+    let edit = session.edit_in_space([at.re, at.im, 0.02]).expect("a way");
+    let before = Vector3::from(session.tip_on_base().expect("a tip"));
+    session.apply(edit).expect("led by hand");
+    session.tick(4000);
+    let way = Vector3::from(session.tip_on_base().expect("a tip")) - before;
+    assert!((way - Vector3::new(0.0, 0.02, 0.0)).norm() < 1e-5, "{way}");
+    let text = session.to_scenario().to_toml();
+    assert!(!text.contains("drag-blocks"), "each block has its part");
+    let saved = AssemblyScenario::parse(&text, "saved.toml", builtin("carrier-and-arm")).expect("it is read");
+    for led in [0, 1] {
+        let mut again = Session::open(saved.leading(led)).expect("it opens");
+        again.seek(session.frame().time);
+        let (one, two) = (again.frame().shared.expect("shared"), session.frame().shared.expect("shared"));
+        for (a, b) in one.loads.motion.components().iter().zip(two.loads.motion.components()) {
+            assert!((a - b).abs() < 1e-9);
+        }
+        assert!((Vector3::from(again.run().shared().expect("shared").now().tips[1]) - before - way).norm() < 1e-9);
+    }
+    // Out of reach it comes as far as the way leads.
+    let edit = session.edit_on_base([3.0, 3.0, 3.0]).expect("a way");
+    session.apply(edit).expect("led by hand");
+    session.tick(4000);
+    assert!(session.frame().is_finite());
+    let wrong = Edit::DragBlocks { targets: [("leg".to_owned(), [0.1, 0.2])].into() };
+    let why = session.apply(wrong).expect_err("no block").to_string();
+    assert!(why.contains("names no block") && why.contains("want one of carrier, arm"), "{why}");
+    // A block on the base carries itself.
+    let first = Session::open(whole.leading(0)).expect("it opens");
+    assert_eq!(first.edit_on_base([0.4, 0.4, 0.1]), None);
 }

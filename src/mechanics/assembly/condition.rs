@@ -104,7 +104,8 @@ impl Assembly {
             // Links that keep their orientation hold their centre of mass off the base pin.
             let ground = if own.inertia.grounded { Some(own.inertia.drives) } else { None };
             let carried = self.mass_above(i) - own.inertia.mass();
-            let fixed = ground.map_or_else(Vector::default, |n| own.inertia.g[n] + carried * own.inertia.end_effector[n]);
+            let fixed =
+                ground.map_or_else(Vector::default, |n| own.inertia.g[n] + carried * own.inertia.end_effector[n]);
             let beside = own.mount.in_space(fixed, own.axial.total() + above);
             self.mass_above(i) * own.mount.at + beside + self.moment_above(i)
         };

@@ -8,6 +8,7 @@ use super::framing::ViewContent;
 use super::mesh::closed;
 use super::options::ViewOptions;
 use super::palette::{Palette, faded, palette};
+use super::platform_reach::PlatformReach;
 use super::stage::Stage;
 use super::{Anchor, ItemChanges, Label, Mesh, MeshSet, Polyline, Rgba, Scene, Solid, Transform, place};
 use stillbase_mechanics::assembly::{BlockState, MAX_BLOCKS, SpatialBase};
@@ -29,6 +30,8 @@ pub struct BlockStages {
     model: Arc<MeshSet>,
     /// Largest reach of a block, m.
     reach: f64,
+    /// Where the last platform can be.
+    platform: Option<PlatformReach>,
     /// Body of a base that floats, and its pose in the axes of the base.
     body: Option<(Mesh, Matrix4<f64>)>,
 }
@@ -113,7 +116,8 @@ impl BlockStages {
         let none = Arc::new(MeshSet::default());
         let block = shared.block().clone();
         let body = block.scenario.base.body().map(body_of);
-        let mut all = Self { block, others, led: none.clone(), model: none, reach, body };
+        let platform = PlatformReach::of(run, shared);
+        let mut all = Self { block, others, led: none.clone(), model: none, reach, platform, body };
         all.join(led);
         Some(all)
     }
@@ -169,7 +173,7 @@ impl BlockStages {
         others: impl Iterator<Item = (usize, &'a Frame)> + Clone,
         options: &ViewOptions,
     ) -> Scene {
-        let places = self.places(led, others.clone());
+        let (places, all) = (self.places(led, others.clone()), others.clone());
         let palette = palette(options.theme);
         let blocks = self.block.scenario.assembly.blocks();
         let is_carried = |i: usize| blocks[i].mount.on.is_some();
@@ -203,10 +207,32 @@ impl BlockStages {
             let label = Label::new("blocks", at, [0.0, 22.0], &block.name, tone, 12.5, Anchor::Centre);
             scene.labels.push(label);
         }
-        if let Some(shared) = &led.shared {
-            self.reactions(&mut scene, shared, &palette);
-        }
+        self.in_space(&mut scene, led, all, &palette);
         scene
+    }
+
+    /// Adds what is of no single block: where the last platform can be, and what reaches the base.
+    pub fn in_space<'a>(
+        &self,
+        scene: &mut Scene,
+        led: &Frame,
+        others: impl Iterator<Item = (usize, &'a Frame)> + Clone,
+        palette: &Palette,
+    ) {
+        if let Some(platform) = &self.platform {
+            let places = self.places(led, others.clone());
+            let frame = |i: usize| match i == self.block.block {
+                true => Some(led),
+                false => others.clone().find(|(other, _)| *other == i).map(|(_, frame)| frame),
+            };
+            let base = led.shared.as_ref().map_or_else(Matrix4::identity, base_place);
+            let from = places[platform.carrier()].transform_point(&Point3::origin()).coords;
+            let place = |p: &Vector3<f64>| (from + base.transform_vector(p)).map(|x| x as f32).into();
+            platform.draw(scene, palette, frame, place);
+        }
+        if let Some(shared) = &led.shared {
+            self.reactions(scene, shared, palette);
+        }
     }
 
     /// Returns the stage of a block that is not led.
@@ -220,7 +246,7 @@ impl BlockStages {
     }
 
     /// Draws force and moment on the base at its origin, from motion, if they do not count as zero.
-    pub fn reactions(&self, scene: &mut Scene, shared: &SharedBase, palette: &Palette) {
+    fn reactions(&self, scene: &mut Scene, shared: &SharedBase, palette: &Palette) {
         let (six, silent) = (shared.loads.motion.components(), shared.silent());
         for (name, unit, first) in [("force", "N", 0), ("moment", "N m", 3)] {
             let parts = first..first + 3;

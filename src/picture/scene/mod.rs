@@ -41,6 +41,7 @@ pub mod overlay;
 pub mod palette;
 #[doc(hidden)]
 pub mod pick;
+mod platform_reach;
 #[doc(hidden)]
 pub mod pointer;
 #[doc(hidden)]

@@ -17,9 +17,9 @@ mod run;
 mod shared;
 mod tip;
 
+pub use base::{AssemblyBase, FreeBase, SpringBase};
 pub use block::AssemblyBlock;
 pub use catalog::{builtin_assembly_scenarios, builtin_scenario_text};
-pub use base::{AssemblyBase, FreeBase, SpringBase};
 pub use file::{AssemblyScenario, BlockTask, TipTask, changed_keys};
 pub use frame::{AssemblyFrame, AssemblyVerdict};
 pub use shared::SharedRun;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use nalgebra::{DVector, Vector3};
 
 use super::against::against;
-use super::block::AssemblyBlock;
 use super::base::MovingSupport;
+use super::block::AssemblyBlock;
 use super::frame::{AssemblyFrame, AssemblyVerdict};
 use crate::changes::in_order;
 use crate::edit::{Edit, TimedEdit};
@@ -16,8 +16,8 @@ use crate::run::Run;
 use stillbase_mechanics::assembly::{BlockState, MAX_BLOCKS};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::platform::{ChainBlock, FreedomChoice, PlatformChain, follow};
-use stillbase_settings::range::quote_clipped;
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
+use stillbase_settings::range::quote_clipped;
 use stillbase_simulation::frame::{Frame, Peaks, SharedBase};
 
 /// The other blocks of an assembly in motion, step by step with the block that is led.
@@ -243,8 +243,7 @@ impl SharedRun {
         let chain_of = PlatformChain::new(parts);
         let from = chain_of.place(&angles);
         let count = ((to - from).norm() / STRIDE).ceil().clamp(1.0, MAX_STRIDES) as usize;
-        let way: Vec<Vector3<f64>> =
-            (0..=count).map(|i| from + (i as f64 / count as f64) * (to - from)).collect();
+        let way: Vec<Vector3<f64>> = (0..=count).map(|i| from + (i as f64 / count as f64) * (to - from)).collect();
         let reached = nearest_on(&chain_of, DVector::from_vec(angles), &way);
         let ends = chain_of.ends(reached.as_slice());
         Some(chain.iter().zip(ends).map(|(i, end)| (assembly.blocks()[*i].name.clone(), [end.re, end.im])).collect())
