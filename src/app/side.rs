@@ -306,9 +306,9 @@ fn in_space(ui: &mut Ui, session: &Session, view_state: &ViewState, p: &Palette,
         commands.push(ViewChange::Switch(Switch::InSpace, is_on).into());
     }
     let Some(mut place) = session.tip_on_base().filter(|_| is_on) else { return };
+    let tip = "Where the end effector is in axes of the base; typed or dragged, all blocks that carry it move";
+    ui.label("end effector from the base: x, y, z").on_hover_text(tip);
     ui.horizontal(|ui| {
-        let tip = "Where the end effector is in axes of the base; typed or dragged, all blocks that carry it move";
-        ui.label("tip").on_hover_text(tip);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             unit(ui, p, "m");
             let mut changed = Vec::new();

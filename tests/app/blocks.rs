@@ -13,6 +13,7 @@ pub const TESTS: &[Test] = tests![
     all_blocks_are_seen_and_one_is_led,
     the_hand_leads_a_block_in_its_own_plane,
     another_block_is_led_and_taken_back,
+    the_hand_leads_a_chain_in_space,
     what_belongs_to_the_assembly_is_not_offered,
 ];
 
@@ -58,23 +59,24 @@ fn all_blocks_are_seen_and_one_is_led() {
     assert!(is_plotted(&h, "Base attitude"));
 }
 
-/// A drag of the target leads the wrist in its plane across, which is not that of the world.
+/// Where a point of the world is drawn.
+fn place(h: &Window, at: [f64; 3]) -> egui::Pos2 {
+    let rect = h.get_by_label_contains("Scene:").rect();
+    let aspect = f64::from(rect.width() / rect.height());
+    let [u, v] = h.state().app_state().view_state().camera().project(at, aspect).expect("seen");
+    rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
+}
+
+/// A drag of the target leads a block in its own plane.
 fn the_hand_leads_a_block_in_its_own_plane() {
     let mut h = opened("wrist-across");
     h.state_mut().app_state_mut().carry_out(SessionCommand::Lead(0));
     h.run_steps(2);
-    let place = |h: &Window, at: [f64; 2]| {
-        let rect = h.get_by_label_contains("Scene:").rect();
-        let app_state = h.state().app_state();
-        let aspect = f64::from(rect.width() / rect.height());
-        let z = app_state.stage().handle_height();
-        // The carrier stands at the origin, its plane that of the world.
-        let [u, v] = app_state.view_state().camera().project([at[0], at[1], z], aspect).expect("seen");
-        rect.min + egui::vec2(u as f32 * rect.width(), v as f32 * rect.height())
-    };
     let from = session(&h).frame().end_effector;
     let to = [from.re - 0.03, from.im + 0.04];
-    let [a, b] = [[from.re, from.im], to].map(|at| place(&h, at));
+    // The carrier stands at the origin, its plane that of the world.
+    let z = h.state().app_state().stage().handle_height();
+    let [a, b] = [[from.re, from.im], to].map(|[x, y]| place(&h, [x, y, z]));
     drag(&mut h, a, b);
     let target = session(&h).frame().target.at;
     assert!((target.re - to[0]).hypot(target.im - to[1]) < 5e-3, "{target} for {to:?}");
@@ -106,6 +108,39 @@ fn another_block_is_led_and_taken_back() {
     h.state_mut().app_state_mut().carry_out(ViewChange::Kind(ViewKind::Flat));
     h.run_steps(2);
     assert!(!items(&mut h).iter().any(|name| name.starts_with("wrist/")));
+}
+
+/// With the box ticked, a drag of the target moves the carrier, too, and the end effector follows the pointer in the plane
+/// of the screen.
+fn the_hand_leads_a_chain_in_space() {
+    let mut h = opened("four-freedoms");
+    for name in ["reach", "tip"] {
+        assert!(items(&mut h).iter().any(|own| own == name), "{name} is missing");
+    }
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(6.0));
+    h.run_steps(2);
+    h.get_by_label("in space, with what carries it").click();
+    h.run_steps(3);
+    let before = session(&h).tip_on_base().expect("a tip");
+    let carrier = |h: &Window| session(h).others().next().map(|(_, frame)| frame.end_effector).expect("the carrier");
+    let stood = carrier(&h);
+    // The handle lies beside the end effector, along the axis of the arm, which is y of the base.
+    let [x, y, z] = before;
+    let from = place(&h, [x, y + h.state().app_state().stage().handle_height(), z]);
+    drag(&mut h, from, from + egui::vec2(25.0, 20.0));
+    h.state_mut().app_state_mut().carry_out(SessionCommand::TogglePlay);
+    h.run_steps(200);
+    let moved = session(&h).tip_on_base().expect("a tip");
+    let way = [0, 1, 2].map(|i| moved[i] - before[i]);
+    assert!(way.iter().map(|x| x * x).sum::<f64>().sqrt() > 0.01, "{way:?}");
+    assert!((carrier(&h) - stood).norm() > 1e-3, "the carrier stands still");
+    assert_eq!(session(&h).frame().shared.expect("shared").silent(), [true; 6]);
+    // The block on the base carries itself.
+    h.get_by_label("Block").click();
+    h.run_steps(2);
+    h.get_by_label_contains("carrier · carrier").click();
+    h.run_steps(3);
+    assert!(h.query_by_label("in space, with what carries it").is_none());
 }
 
 fn what_belongs_to_the_assembly_is_not_offered() {

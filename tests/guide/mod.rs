@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use markdown::{addresses, blocks, definitions, labels, prose};
-use stillbase::mechanics::assembly::{self, Assembly};
+use stillbase::mechanics::assembly::{self, Assembly, builtin_assemblies};
 use stillbase::mechanics::machine;
 use stillbase::session::assembly::AssemblyScenario;
 use stillbase::session::scenario::Scenario;
@@ -185,8 +185,10 @@ fn toml_blocks_are_read() {
                 assemblies.push((name.to_owned(), read.unwrap_or_else(|error| panic!("{error}"))));
                 continue;
             }
-            let of = |(name, _): &&(String, Assembly)| block.text.contains(&format!("machine = {name:?}"));
-            if let Some((_, assembly)) = assemblies.iter().find(of) {
+            let of = |name: &str| block.text.contains(&format!("machine = {name:?}"));
+            let own = assemblies.iter().find(|(name, _)| of(name)).map(|(_, assembly)| assembly);
+            let known = || builtin_assemblies().iter().find(|assembly| of(&assembly.name));
+            if let Some(assembly) = own.or_else(known) {
                 let read = AssemblyScenario::parse(&block.text, &place, assembly.clone());
                 read.unwrap_or_else(|error| panic!("{error}"));
                 continue;

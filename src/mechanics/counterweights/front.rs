@@ -39,7 +39,7 @@ pub const END_TOLERANCE: f64 = 1e-6;
 /// neighbours differ most.
 ///
 /// # Errors
-/// As [`place_weights`], and if a rotor is free.
+/// As [`place_weights`](super::place_weights), and if a rotor is free.
 pub fn front(machine: &Machine, request: &CounterweightSpec, count: usize) -> Result<Front, CounterweightError> {
     answer_now::<FrontSearch>((machine.clone(), request.clone(), count))
 }

@@ -230,6 +230,12 @@ impl BlockStages {
             let place = |p: &Vector3<f64>| (from + base.transform_vector(p)).map(|x| x as f32).into();
             platform.draw(scene, palette, frame, place);
         }
+        if let Some(tip) = &self.block.scenario.tip {
+            let base = led.shared.as_ref().map_or_else(Matrix4::identity, base_place);
+            let place = |p: &[f64; 3]| base.transform_point(&Point3::from(*p)).map(|x| x as f32).into();
+            let strip: Vec<[f32; 3]> = tip.points.iter().map(place).collect();
+            scene.lines.push(Polyline::new("tip", vec![strip], 1.6, palette.ink).dashed(5.0, 4.0));
+        }
         if let Some(shared) = &led.shared {
             self.reactions(scene, shared, palette);
         }

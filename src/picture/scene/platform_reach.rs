@@ -2,7 +2,8 @@
 //! surfaces in space.
 //!
 //! The last block reaches a region or a curve in its plane, from wherever its carrier has its platform. So the reach is the
-//! sum of both sets, and its surfaces are among the sums of their boundaries. Each b turns its own set about its pin.
+//! sum of both sets, and its surfaces are among the sums of their boundaries: of two regions, sums of points at which both
+//! boundaries face the same way along the line in which their planes cross. Each b turns its own set about its pin.
 
 use std::sync::Arc;
 
@@ -30,6 +31,8 @@ struct BlockReach {
     block: usize,
     /// Closed loops or one curve, m from the base pin.
     lines: Vec<Vec<Vector>>,
+    /// Whether the lines bound a region, which is to their left.
+    bounds: bool,
     b: f64,
     lambda_sum: f64,
     axes: Matrix3<f64>,
@@ -45,19 +48,27 @@ impl BlockReach {
             line.extend(line.first().copied());
             line
         };
+        let bounds = !loops.is_empty();
         let all = if loops.is_empty() { vec![curve] } else { loops.into_iter().map(close).collect() };
         let lines = all.iter().filter(|line| line.len() > 1).map(|line| evenly(line, POINTS)).collect();
-        Some(Self { block, lines, b, lambda_sum: space.lambda_sum(), axes, height })
+        Some(Self { block, lines, bounds, b, lambda_sum: space.lambda_sum(), axes, height })
     }
 
-    /// Returns the lines at another b, in axes of the base.
-    fn at(&self, b: f64) -> Vec<Vec<Vector3<f64>>> {
+    /// Returns the lines at another b, in axes of the base; each point with how far the boundary faces along a direction,
+    /// 0 on a curve.
+    fn at(&self, b: f64, along: &Vector3<f64>) -> Vec<Vec<(Vector3<f64>, f64)>> {
         let turn = unit((b - self.b) / self.lambda_sum);
         let place = |p: &Vector| {
             let p = turn * p;
             self.axes * Vector3::new(p.re, p.im, self.height)
         };
-        self.lines.iter().map(|line| line.iter().map(place).collect()).collect()
+        let facing = |way: Vector3<f64>| if self.bounds { way.cross(&self.axes.column(2)).dot(along) } else { 0.0 };
+        let line = |line: &Vec<Vector>| {
+            let places: Vec<Vector3<f64>> = line.iter().map(place).collect();
+            let way = |i: usize| places[(i + 1).min(places.len() - 1)] - places[i.saturating_sub(1)];
+            (0..places.len()).map(|i| (places[i], facing(way(i)))).collect()
+        };
+        self.lines.iter().map(line).collect()
     }
 }
 
@@ -123,16 +134,23 @@ impl PlatformReach {
         place: impl Fn(&Vector3<f64>) -> [f32; 3],
     ) {
         let (Some(below), Some(above)) = (frame(self.carrier.block), frame(self.last.block)) else { return };
-        let (first, second) = (self.carrier.at(below.b_reference), self.last.at(above.b_reference));
+        let crossing = self.carrier.axes.column(2).cross(&self.last.axes.column(2));
+        let (first, second) =
+            (self.carrier.at(below.b_reference, &crossing), self.last.at(above.b_reference, &crossing));
         let mut strips: Vec<Vec<[f32; 3]>> = Vec::new();
         // Each boundary at points of the other one.
         for ((along, across), count) in [((&first, &second), LINES[0]), ((&second, &first), LINES[1])] {
             for other in across {
                 let step = (other.len() - 1).div_ceil(count).max(1);
-                for p in other.iter().step_by(step) {
-                    let moved =
-                        |line: &Vec<Vector3<f64>>| line.iter().map(|q| place(&(self.between + p + q))).collect();
-                    strips.extend(along.iter().map(moved));
+                for (p, facing) in other.iter().step_by(step) {
+                    for line in along {
+                        let parts = line.split(|(_, own)| own * facing < 0.0).filter(|part| part.len() > 1);
+                        strips.extend(
+                            parts.map(|part| {
+                                part.iter().map(|(q, _)| place(&(self.between + p + q))).collect::<Vec<_>>()
+                            }),
+                        );
+                    }
                 }
             }
         }

@@ -64,6 +64,8 @@ pub struct TipTask {
     pub path: TipPath,
     /// Places of the blocks in the assembly, the one on the base first. Their tasks are samples that the path gives.
     pub blocks: Vec<usize>,
+    /// The points of the path in order, m, in axes of the base.
+    pub points: Vec<[f64; 3]>,
 }
 
 #[derive(Deserialize)]
@@ -220,9 +222,11 @@ impl Reading<'_> {
             let scenario = self.of_block(&assembly, i, (task, other), step)?;
             tasks[i] = Some(BlockTask { rests: stated.is_none() && scenario.edits.is_empty(), scenario });
         }
+        let mut points = Vec::new();
         if let Some(path) = &file.tip {
             let rest: Vec<DriveAngles> = tasks.iter().map(rest_of).collect();
             let plan = path.plan(&assembly, &rest).map_err(|TipError { key, said }| self.wrong(&["tip", key], said))?;
+            points = plan.points;
             for (i, samples) in plan.blocks.iter().zip(plan.samples) {
                 let other = file.scenario.get(&assembly.blocks()[*i].name);
                 let scenario = self.of_block(&assembly, *i, (given(&samples), other), step)?;
@@ -248,7 +252,7 @@ impl Reading<'_> {
             step,
             duration,
             lead,
-            tip: file.tip.map(|path| TipTask { path, blocks: chain }),
+            tip: file.tip.map(|path| TipTask { path, blocks: chain, points }),
             against: None,
         };
         if let Some(pair) = &file.against {

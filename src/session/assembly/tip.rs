@@ -113,6 +113,8 @@ pub(super) struct TipPlan {
     pub blocks: Vec<usize>,
     /// Drive angles of each over time.
     pub samples: Vec<Samples>,
+    /// The points of the path in order, m, in axes of the base.
+    pub points: Vec<[f64; 3]>,
 }
 
 /// The chain that carries a block.
@@ -320,7 +322,11 @@ impl TipPath {
                 None => least_time(assembly, &of.blocks, &motions, rest, u.len())?,
             };
             return match samples(time) {
-                Some(samples) => Ok(TipPlan { blocks: of.blocks, samples }),
+                Some(samples) => Ok(TipPlan {
+                    blocks: of.blocks,
+                    samples,
+                    points: points.iter().map(|(_, p)| (*p).into()).collect(),
+                }),
                 None => wrong("time", "is too short for its points: want a longer one"),
             };
         }
