@@ -18,6 +18,7 @@ pub const TESTS: &[Test] = tests![
     joints_is_current,
     assembly_is_current,
     assembly_wrist_is_current,
+    assembly_in_space_is_current,
     assembly_off_its_pin_is_current,
     design_is_current,
     draw_is_current,
@@ -144,6 +145,10 @@ fn assembly_is_current() {
 
 fn assembly_wrist_is_current() {
     is_current("assembly-wrist");
+}
+
+fn assembly_in_space_is_current() {
+    is_current("assembly-in-space");
 }
 
 fn assembly_off_its_pin_is_current() {

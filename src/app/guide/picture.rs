@@ -43,6 +43,7 @@ pictures![
     "spacecraft",
     "assembly",
     "assembly-wrist",
+    "assembly-in-space",
     "assembly-off-its-pin",
     "compare",
     "tolerances",

@@ -66,7 +66,7 @@ impl Shown {
 }
 
 /// The pictures with their names.
-const PICTURES: [(&str, Shown); 16] = [
+const PICTURES: [(&str, Shown); 17] = [
     ("window", Shown::Window("case-3", 0.62, Vec::new)),
     ("spacecraft", Shown::Window("spacecraft", 0.75, Vec::new)),
     ("compare", Shown::Window("case-1", 0.62, side_by_side)),
@@ -78,6 +78,7 @@ const PICTURES: [(&str, Shown); 16] = [
     ("joints", Shown::Scene("case-1", 0.5, ViewKind::Joints)),
     ("assembly", Shown::Window("arm-against-arm", 1.4, Vec::new)),
     ("assembly-wrist", Shown::Scene("wrist-across", 1.0, ViewKind::Space)),
+    ("assembly-in-space", Shown::Scene("four-freedoms", 2.6, ViewKind::Space)),
     ("assembly-off-its-pin", Shown::Scene("off-its-pin", 0.5, ViewKind::Space)),
     ("paper-table-1", Shown::Paper(&[PaperFigure::Table1], 4.0)),
     ("paper-fig-3", Shown::Paper(&[PaperFigure::Fig3], 4.0)),
