@@ -94,6 +94,7 @@ impl Failure {
                 Some(task) => (task, Some(block), *why),
                 None => (scenario, Some(block), *why),
             },
+            (_, refusal @ Refusal::OfAssembly(_)) => (scenario, None, refusal),
             (of, refusal) => (scenario, of.as_ref().map(|of| of.name().to_owned()), refusal),
         };
         let proposals = match refusal {
@@ -330,6 +331,7 @@ impl From<Refusal> for Failure {
             | Refusal::Untrusted { .. } => Self::no_answer(e),
             Refusal::Machine(_)
             | Refusal::OutOfRange { .. }
+            | Refusal::OfAssembly(_)
             | Refusal::TooManySteps { .. }
             | Refusal::TooLarge { .. }
             | Refusal::LeavesLimits { .. }

@@ -8,7 +8,7 @@ use stillbase_session::signal_table;
 use stillbase_simulation::signal_table::SignalTable;
 
 use super::failure::Failure;
-use super::input::{Settings, scenario};
+use super::input::{Settings, scenario_of_any};
 use super::output::check_size;
 use super::progress::goes_on;
 
@@ -48,7 +48,7 @@ impl SignalSource {
     /// # Errors
     /// If there is no such scenario, or it cannot run.
     pub fn of_scenario(name: &str, settings: &Settings) -> Result<Self, Failure> {
-        let scenario = scenario(name, settings)?;
+        let scenario = scenario_of_any(name, settings)?;
         let table = table_of(&scenario)?;
         Ok(Self { name: name.to_owned(), cases: vec![(Some(scenario.name), table)] })
     }

@@ -26,7 +26,7 @@ const IS_ASSEMBLY: &str = "this is an assembly of several machines: want one mac
                            dynamics, simulate, headless, render and export-model take an assembly, too";
 
 const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; the window, \
-                              simulate, headless, render and export-model take this one, too";
+                              simulate, headless, diff, render and export-model take this one, too";
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
@@ -201,8 +201,20 @@ pub(crate) fn assembly_scenario_of<E: From<ScenarioError>>(
     let assembly = apply(found)?;
     // With settings, lines are no longer those of the file.
     let changed = if change.is_empty() { None } else { Some(changed_keys(table, change).to_string()) };
-    let text = changed.as_deref().unwrap_or(text);
-    Ok(Some(AssemblyScenario::parse(text, &shortened(label(name), 300), assembly)?))
+    let read = AssemblyScenario::parse(changed.as_deref().unwrap_or(text), &shortened(label(name), 300), assembly);
+    Ok(Some(read.map_err(|why| if changed.is_some() { without_lines(why) } else { why })?))
+}
+
+/// Returns the error of a text that is not that of a file, whose lines say nothing.
+fn without_lines(why: ScenarioError) -> ScenarioError {
+    match why {
+        ScenarioError::Faulty { file, first, mut faults } => {
+            faults.list.iter_mut().for_each(|fault| (fault.line, fault.column) = (None, None));
+            ScenarioError::Faulty { file, first: Box::new(without_lines(*first)), faults }
+        }
+        ScenarioError::Syntax { file, message, .. } => ScenarioError::Syntax { file, line: None, message },
+        other => other,
+    }
 }
 
 /// Returns a scenario as [`scenario`] does. Of an assembly, returns that of the block which its file leads; for the name or

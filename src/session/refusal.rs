@@ -53,6 +53,9 @@ pub enum Refusal {
         #[source]
         why: Box<Refusal>,
     },
+    /// What all blocks of an assembly share does not serve.
+    #[error("{0}")]
+    OfAssembly(String),
     /// The path cannot be made.
     #[error(transparent)]
     Path(#[from] PathError),

@@ -114,7 +114,7 @@ fn blocks_follow_tasks_of_their_own() {
         (&["headless", "case-1", "wrist-across", "-o", "x.rrd"], "recorded by itself"),
         (&["simulate", "wrist-across", "--signals", "nothing"], "no signal \"nothing\""),
         (&["simulate", "wrist-across", "--set", "task.elbow.b=1"], "no block \"elbow\""),
-        (&["simulate", "wrist-across", "--set", "step=0"], "want 0.000001 to 0.1 s"),
+        (&["simulate", "wrist-across", "--set", "step=0"], "want 0.00001 to 0.01 s"),
         (&["machines", "two-arms", "-o", "x.toml"], "is an assembly"),
     ] {
         fails(args, 2, &[words]);

@@ -130,7 +130,7 @@ fn faults_are_told_in_their_lines() {
         (good.replace("[0.3, 0]", "[0.3]"), "led.toml:11: block b: "),
         (good.split("[task.b]").next().expect("text").to_owned(), "block b has no task"),
         (format!("{good}step = 3\n").replace("[task.b]", "[task.b]\nlaw = \"x\""), "block b: "),
-        (format!("step = 3\n{good}"), "led.toml:1: step: is 3: want 0.000001 to 0.1 s"),
+        (format!("step = 3\n{good}"), "led.toml:1: step: is 3: want 0.00001 to 0.01 s"),
         (format!("{good}{}", free.replace("mass = 3", "mass = -3")), "led.toml:14: base.mass: want the mass"),
         (format!("{good}{}", free.replace("[1, 1, 1]", "[1, 1]")), "base.inertia: want [x, y, z]"),
         (format!("{good}{}", free.replace("[1, 1, 1]", "[1, 1, 5]")), "none more than the two others together"),

@@ -105,7 +105,7 @@ fn faults_of_bases_are_told() {
         (springs.to_owned(), "base.stiffness: want six numbers"),
         (format!("{springs}stiffness = [1, 2, 3]"), "base.stiffness: want six numbers"),
         (format!("{springs}stiffness = [1, 2, 3, 4, 5, -6]"), "stiffness has the eigenvalue -6: want none below 0"),
-        (format!("{springs}stiffness = [1, 2, 3, 4, 5, nan]"), "base.stiffness: want six numbers"),
+        (format!("{springs}stiffness = [1, 2, 3, 4, 5, nan]"), "base.stiffness: holds NaN: want numbers of at most"),
         (format!("{springs}stiffness = [1, 2, 3, 4, 5, 6]\ndamping = [1]"), "base.damping: want six numbers"),
         (
             format!("{springs}stiffness = [1, 2, 3, 4, 5, 6]\nmomentum = [1, 2, 3]"),

@@ -231,11 +231,11 @@ fn proposals_work_as_printed() {
         let key = if why.contains("tip.from") { "from" } else { "to" };
         let proposed = why.rsplit_once("as [").and_then(|(_, rest)| rest.split_once(']')).expect(&why).0;
         let kept: Vec<&str> = text.lines().filter(|line| !line.starts_with(key)).collect();
-        let mended = format!("{}\n{key} = [{proposed}]\nchoice = \"mid-range\"\n", kept.join("\n"));
-        // The place itself is reached; the way to it may be longer than what it was asked for.
+        let mended = format!("{}\n{key} = [{proposed}]\n", kept.join("\n"));
         match scenario(&assembly, &mended) {
             Ok(_) => {}
-            Err(why) => assert!(!why.contains("is not reached at these b"), "{mended}{why}"),
+            // A begin is proposed by itself: the way from there is another question.
+            Err(why) => assert!(key == "from" && !why.contains("is not reached at these b"), "{mended}{why}"),
         }
     }
     let way = "to = [0.45, 0.55, 0.1]\ntime = 1.0\n";

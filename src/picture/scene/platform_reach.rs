@@ -18,7 +18,7 @@ use stillbase_session::assembly::SharedRun;
 use stillbase_simulation::frame::Frame;
 
 /// Number of lines along each boundary, and of points on each line.
-const LINES: [usize; 2] = [12, 24];
+const LINES: [usize; 2] = [16, 36];
 const POINTS: usize = 72;
 
 /// Opacity and width, px, of the lines.

@@ -21,6 +21,8 @@ pub struct NearestPlace {
     pub place: Vector3<f64>,
     /// Its distance, m.
     pub distance: f64,
+    /// The angles there, rad.
+    pub angles: DVector<f64>,
 }
 
 /// Returns the angles of the pose at a place, m, within all limits; of the poses that a search from many starts finds,
@@ -42,7 +44,7 @@ pub fn pose_at(chain: &PlatformChain, p: &Vector3<f64>, near: &DVector<f64>) -> 
         let (a, distance) = descended(chain, p, clamped(chain, start(i)));
         if distance > tolerance {
             if nearest.as_ref().is_none_or(|known| distance < known.distance) {
-                nearest = Some(NearestPlace { place: chain.place(a.as_slice()), distance });
+                nearest = Some(NearestPlace { place: chain.place(a.as_slice()), distance, angles: a });
             }
             continue;
         }
@@ -58,7 +60,10 @@ pub fn pose_at(chain: &PlatformChain, p: &Vector3<f64>, near: &DVector<f64>) -> 
     match (best, nearest) {
         (Some((_, a)), _) => Ok(a),
         (None, Some(nearest)) => Err(nearest),
-        (None, None) => Err(NearestPlace { place: chain.place(near.as_slice()), distance: f64::INFINITY }),
+        (None, None) => {
+            let (place, angles) = (chain.place(near.as_slice()), near.clone());
+            Err(NearestPlace { place, distance: f64::INFINITY, angles })
+        }
     }
 }
 

@@ -58,6 +58,12 @@ impl AssemblyBase {
 /// Largest product of the step and of how fast a base swings on its springs: above it the explicit method diverges.
 const MAX_STEP_ANGLE: f64 = 2.5;
 
+/// Largest turn of a floating base in a step, rad.
+const MAX_TURN: f64 = 0.3;
+
+/// Shortest step of a scenario, s.
+const LEAST_STEP_S: f64 = 1e-5;
+
 /// How a base moves.
 #[derive(Clone, Debug)]
 pub(super) enum MovingSupport {
@@ -86,24 +92,37 @@ impl MovingSupport {
     pub fn of(base: &AssemblyBase, assembly: &Assembly, states: &[BlockState], step: f64) -> Result<Self, Refusal> {
         Ok(match base {
             AssemblyBase::Fixed => Self::Fixed,
-            AssemblyBase::Free(base) => Self::Free {
-                com: assembly.base_motion(&base.body, states, &Vector3::zeros()).com,
-                mass: base.body.mass + assembly.mass(),
-                attitude: Attitude::level(),
-                place: Vector3::zeros(),
-                base: base.clone(),
-            },
+            AssemblyBase::Free(base) => {
+                let rate = assembly.base_motion(&base.body, states, &base.kept.angular).rate.norm();
+                if step * rate > MAX_TURN {
+                    let most = shorter(MAX_TURN / rate);
+                    return Err(Refusal::OfAssembly(format!(
+                        "with this angular_momentum the base turns at {} rad/s: want less, or step of at most {most} s",
+                        ShortNumber(rate.ceil()),
+                    )));
+                }
+                Self::Free {
+                    com: assembly.base_motion(&base.body, states, &Vector3::zeros()).com,
+                    mass: base.body.mass + assembly.mass(),
+                    attitude: Attitude::level(),
+                    place: Vector3::zeros(),
+                    base: base.clone(),
+                }
+            }
             AssemblyBase::Compliant(base) => {
                 let SpringBase { body, stiffness, damping } = &**base;
                 let mut held =
-                    Compliance::new(stiffness, damping).map_err(|why| Refusal::Task(format!("base: {why}")))?;
+                    Compliance::new(stiffness, damping).map_err(|why| Refusal::OfAssembly(format!("base: {why}")))?;
                 held.preload = assembly.preload(body, states);
                 let fastest = assembly.fastest(body, &held, states);
                 if step * fastest > MAX_STEP_ANGLE {
-                    return Err(Refusal::Task(format!(
-                        "the base swings or settles at {} rad/s on its springs and dampers: want step of at most {} s",
+                    let want = match shorter(MAX_STEP_ANGLE / fastest) {
+                        most if most >= LEAST_STEP_S => format!("want step of at most {} s", ShortNumber(most)),
+                        _ => "want softer springs and dampers".to_owned(),
+                    };
+                    return Err(Refusal::OfAssembly(format!(
+                        "the base swings or settles at {} rad/s on its springs and dampers: {want}",
                         ShortNumber(fastest.ceil()),
-                        ShortNumber(shorter(MAX_STEP_ANGLE / fastest)),
                     )));
                 }
                 Self::Compliant { body: body.clone(), held: Box::new(held), state: BaseState::at_rest() }
@@ -160,10 +179,9 @@ impl MovingSupport {
     }
 }
 
-/// Returns a number rounded down to two digits.
+/// Returns a number rounded to two digits, a little smaller.
 fn shorter(x: f64) -> f64 {
-    let unit = 10f64.powf(x.log10().floor() - 1.0);
-    (x / unit).floor() * unit
+    format!("{:.1e}", 0.94 * x).parse().unwrap_or(x)
 }
 
 /// Returns an inertia from three moments or nine numbers, row by row.

@@ -130,7 +130,7 @@ struct BaseInFile {
 const MAX_NUMBER: f64 = 1e9;
 
 /// Range of the step, s, and of the duration, s.
-const STEP: [f64; 2] = [1e-6, 0.1];
+const STEP: [f64; 2] = [1e-5, 0.01];
 const DURATION: [f64; 2] = [1e-3, 1e6];
 
 /// Reads a scenario of an assembly.
@@ -275,7 +275,10 @@ impl Reading<'_> {
         let wrong = |key: &str, said: &str| self.wrong(&["base", key], said);
         let BaseInFile { momentum, angular_momentum, stiffness, damping, .. } = base;
         let is_of = |kind: BaseKind, key: &str, is_stated: bool| match is_stated && base.kind != kind {
-            true => Err(wrong(key, &format!("has no use there: want kind = \"{}\", or no {key}", kind.word()))),
+            true => Err(wrong(
+                key,
+                &format!("has no use there: want kind = \"{}\", or no {key} (--set base.{key}=default)", kind.word()),
+            )),
             false => Ok(()),
         };
         is_of(BaseKind::Free, "momentum", momentum.is_some())?;
@@ -323,8 +326,11 @@ impl Reading<'_> {
             return Ok(AssemblyBase::Free(FreeBase { body, kept: Momentum { linear, angular } }));
         }
         let six = |key: &str, stated: &Option<Vec<f64>>, unit: &str| {
-            let numbers = stated.as_deref().and_then(six_by_six);
-            numbers.filter(|six| six.iter().all(|x| x.abs() <= MAX_NUMBER)).ok_or_else(|| {
+            let numbers = stated.as_deref().unwrap_or_default();
+            if let Some(x) = numbers.iter().find(|x| !(x.abs() <= MAX_NUMBER)) {
+                return Err(wrong(key, &format!("holds {x}: want numbers of at most {MAX_NUMBER}, {unit}")));
+            }
+            six_by_six(numbers).ok_or_else(|| {
                 wrong(key, &format!("want six numbers, along and about x, y, z, {unit}, or all 36 row by row"))
             })
         };

@@ -11,25 +11,33 @@ use super::file::holding;
 use crate::gentle_motion::gentle_motion;
 use stillbase_mechanics::assembly::{Assembly, BlockState, MAX_BLOCKS};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::curves::given::MAX_SAMPLES;
 use stillbase_planning::curves::{Path, Samples};
 use stillbase_planning::platform::{ChainBlock, FreedomChoice, PlatformChain, StopReason, Stopped, follow, pose_at};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::{Profile, TimeLaw};
 use stillbase_planning::{Motion, Reference};
+use stillbase_settings::number::significant;
 use stillbase_settings::word::Choice;
 
 /// Number of instants of each leg: the first try, and the most.
 const INSTANTS: [usize; 2] = [120, 1920];
 
+/// Least number of instants of each leg of a long path.
+const LEAST_INSTANTS: usize = 30;
+
 /// Largest distance of the end effector from its path between two instants, m.
 const PATH_TOLERANCE: f64 = 1e-7;
 
 /// Number of instants in each interval at which limits are checked.
-const CHECKS: usize = 3;
+const CHECKS: usize = 8;
+
+/// Factor on the least time, for what torques do between these instants.
+const TIME_MARGIN: f64 = 1.0005;
 
 /// Largest coordinate, m, and range of the time, s.
 const MAX_PLACE: f64 = 1e6;
-const TIME: [f64; 2] = [1e-3, 1e6];
+const TIME: [f64; 2] = [1e-3, 3600.0];
 
 /// A path of the end effector of a block in axes of the base, while each block of its chain holds its b.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -174,18 +182,26 @@ impl TipChain {
     }
 
     /// Returns the angles at a place near some; of a place that is not reached, says which one is.
-    fn pose(&self, key: &'static str, p: &Vector3<f64>, near: &DVector<f64>) -> Result<DVector<f64>, TipError> {
+    fn pose(
+        &self,
+        key: &'static str,
+        p: &Vector3<f64>,
+        near: &DVector<f64>,
+        serves: impl Fn(&Vector3<f64>) -> bool,
+    ) -> Result<DVector<f64>, TipError> {
         pose_at(&self.chain, p, near).or_else(|nearest| {
             let (middle, _) = self.chain.middles();
             // A place beside the nearest one, away from limits and stretched arms.
-            let inner = pose_at(&self.chain, &nearest.place, near).unwrap_or_else(|_| near.clone());
-            let shares = [0.0, 0.01, 0.03, 0.1, 0.3];
-            let reached = shares.iter().map(|share| rounded(&self.chain.place((&inner + *share * (&middle - &inner)).as_slice())));
-            let reached = reached.into_iter().find(|p| pose_at(&self.chain, p, near).is_ok());
+            let inner = nearest.angles;
+            let shares = [0.0, 0.01, 0.03, 0.1, 0.3, 0.6];
+            let reached = shares
+                .iter()
+                .map(|share| rounded(&self.chain.place((&inner + *share * (&middle - &inner)).as_slice())));
+            let reached = reached.into_iter().find(|p| pose_at(&self.chain, p, near).is_ok() && serves(p));
             let mend = reached.map_or_else(String::new, |p| format!(", as {}", typed(&p)));
             let said = format!(
-                "is not reached at these b: the nearest place that was found is {:.4} m away; want a place in reach{mend}",
-                nearest.distance
+                "is not reached at these b: the nearest place that was found is {} m away; want a place in reach{mend}",
+                significant(nearest.distance)
             );
             wrong(key, said)
         })
@@ -269,13 +285,25 @@ impl TipPath {
         let choice = self.choice.unwrap_or(FreedomChoice::LeastRates);
         let near = |choice| if choice == FreedomChoice::MidRange { of.chain.middles().0 } else { of.near.clone() };
         let points = self.points(&of, &near(choice))?;
-        let start = |choice| of.pose("from", &points[0].1, &near(choice));
-        // Each place by itself, so that the message names the one that is out of reach.
-        for (key, p) in &points[1..] {
-            of.pose(key, p, &of.near)?;
-        }
+        let start = |choice| of.pose("from", &points[0].1, &near(choice), |_| true);
         let from = start(choice)?;
-        let mut instants = INSTANTS[0];
+        // Each place by itself, so that the message names the one that is out of reach. A place that is proposed has a
+        // way to it.
+        for (i, (key, p)) in points.iter().enumerate().skip(1) {
+            of.pose(key, p, &of.near, |proposed| {
+                let mut points = points[..=i].to_vec();
+                points[i].1 = *proposed;
+                let (_, places) = self.instants(&points, law, INSTANTS[0]);
+                points[i - 1].1 != *proposed && follow(&of.chain, choice, from.clone(), &places).is_ok()
+            })?;
+        }
+        let legs = points.len() - 1;
+        let most = (MAX_SAMPLES - 1) / legs;
+        if most < LEAST_INSTANTS {
+            let count = (MAX_SAMPLES - 1) / LEAST_INSTANTS - 1;
+            return wrong("via", format!("{} points: want at most {count}", self.via.len()));
+        }
+        let mut instants = INSTANTS[0].min(most);
         loop {
             let (u, places) = self.instants(&points, law, instants);
             let all = follow(&of.chain, choice, from.clone(), &places).or_else(|stopped| {
@@ -313,7 +341,7 @@ impl TipPath {
             else {
                 return wrong("to", "gives no motion: want other points");
             };
-            if instants < INSTANTS[1] && self.strays(&of, &points, law, &motions) > PATH_TOLERANCE {
+            if 2 * instants <= INSTANTS[1].min(most) && self.strays(&of, &points, law, &motions) > PATH_TOLERANCE {
                 instants *= 2;
                 continue;
             }
@@ -438,5 +466,5 @@ fn least_time(
     if !is_limited || squared == 0.0 {
         return wrong("time", "is not stated, and no drive of these blocks has a limit: want time, s");
     }
-    Ok(squared.sqrt().clamp(TIME[0], TIME[1]))
+    Ok((TIME_MARGIN * squared.sqrt()).clamp(TIME[0], TIME[1]))
 }
