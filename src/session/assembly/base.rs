@@ -95,9 +95,14 @@ impl MovingSupport {
             AssemblyBase::Free(base) => {
                 let rate = assembly.base_motion(&base.body, states, &base.kept.angular).rate.norm();
                 if step * rate > MAX_TURN {
-                    let most = shorter(MAX_TURN / rate);
+                    let want = match shorter(MAX_TURN / rate) {
+                        most if most >= LEAST_STEP_S => {
+                            format!("want less, or step of at most {} s", ShortNumber(most))
+                        }
+                        _ => "want less".to_owned(),
+                    };
                     return Err(Refusal::OfAssembly(format!(
-                        "with this angular_momentum the base turns at {} rad/s: want less, or step of at most {most} s",
+                        "with this angular_momentum the base turns at {} rad/s: {want}",
                         ShortNumber(rate.ceil()),
                     )));
                 }

@@ -327,7 +327,7 @@ impl Reading<'_> {
         }
         let six = |key: &str, stated: &Option<Vec<f64>>, unit: &str| {
             let numbers = stated.as_deref().unwrap_or_default();
-            if let Some(x) = numbers.iter().find(|x| !(x.abs() <= MAX_NUMBER)) {
+            if let Some(x) = numbers.iter().find(|x| x.is_nan() || x.abs() > MAX_NUMBER) {
                 return Err(wrong(key, &format!("holds {x}: want numbers of at most {MAX_NUMBER}, {unit}")));
             }
             six_by_six(numbers).ok_or_else(|| {
