@@ -103,6 +103,7 @@ fn of_machine(
         place::place_of_thing(ui, Handle::Target, p, |ui| {
             target(ui, session, p, commands);
             in_space(ui, session, view_state, p, commands);
+            hand_over(ui, session, commands);
         });
     }
     if session.scenario().assembly.is_none() {
@@ -126,6 +127,30 @@ fn against(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
         );
         if ui.checkbox(&mut is_bound, format!("against {}", block.name)).on_hover_text(tip).changed() {
             commands.push(SessionCommand::Against(is_bound.then_some(i)).into());
+        }
+    }
+}
+
+/// Draws a button for each other block that can pass its payload to the block that is led, or take that of it.
+fn hand_over(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
+    let Some(shared) = session.run().shared() else { return };
+    let (own, blocks) = (shared.block().block, shared.assembly().blocks());
+    let holds = |i: usize| blocks[i].machine.spec().payload.mass > 0.0;
+    for (i, block) in blocks.iter().enumerate() {
+        if shared.assembly().parallel([own, i]).is_err() || !(holds(own) || holds(i)) {
+            continue;
+        }
+        let ([from, to], words) = match (holds(own), holds(i)) {
+            (true, true) => ([own, i], format!("exchange payloads with {}", block.name)),
+            (true, false) => ([own, i], format!("hand payload to {}", block.name)),
+            _ => ([i, own], format!("take payload of {}", block.name)),
+        };
+        let [from, to] = [from, to].map(|i| blocks[i].name.clone());
+        let tip = "Where both end effectors meet at equal rates, at the present step. An arm stays balanced only if it \
+                   gets as much as it gives.";
+        if ui.button(words).on_hover_text(tip).clicked() {
+            commands.push(Command::Session(SessionCommand::Edit(Edit::HandOver { from, to })));
+            commands.push(SessionCommand::EndGesture.into());
         }
     }
 }

@@ -25,6 +25,7 @@ pub(super) fn changed(scenario: &Scenario, edit: &Edit) -> Result<Scenario, Refu
         Edit::PoseB { .. }
         | Edit::DragTarget { .. }
         | Edit::DragBlocks { .. }
+        | Edit::HandOver { .. }
         | Edit::DragAngles { .. }
         | Edit::PullLink { .. }
         | Edit::SlideB { .. } => {}
@@ -69,9 +70,9 @@ pub(super) fn task_at_b(scenario: &Scenario, space: Option<&PoseSpace>, b: f64) 
     task
 }
 
-/// Returns the number of edits at step 0 before the first drag.
+/// Returns the number of edits at step 0 before the first that acts in motion.
 pub(super) fn opening<'a>(script: impl IntoIterator<Item = &'a TimedEdit>) -> usize {
-    script.into_iter().take_while(|e| e.step == 0 && !e.edit.is_drag()).count()
+    script.into_iter().take_while(|e| e.step == 0 && !e.edit.acts_in_motion()).count()
 }
 
 /// Returns the indices of the edits sorted by step; edits of one step keep their order.

@@ -167,10 +167,10 @@ impl Document {
         let mut script = document.script.to_vec();
         script.retain(|e| !e.edit.is_replaced_by(&timed.edit));
         if timed.edit.sets_path() && document.script.is_dragged() {
-            // A new plan puts a dragged machine back on its path. Drags and later changes of b are dropped, and all
+            // A new plan puts a dragged machine back on its path. Drags, hand-overs and later changes of b are dropped, and all
             // other edits move to step 0.
             let mut kept: Vec<TimedEdit> = Vec::with_capacity(script.len());
-            for e in script.drain(..).filter(|e| !e.edit.is_drag()) {
+            for e in script.drain(..).filter(|e| !e.edit.acts_in_motion()) {
                 if e.step > 0 && matches!(e.edit, Edit::PoseB { .. }) {
                     continue;
                 }
@@ -181,7 +181,7 @@ impl Document {
             document.end = 0;
         }
         // The edit goes before the first drag, so that a drag at step 0 starts from the pose that this edit gives.
-        let place = script.iter().position(|e| e.step > 0 || e.edit.is_drag());
+        let place = script.iter().position(|e| e.step > 0 || e.edit.acts_in_motion());
         let sets_no_key = timed.edit.part("task").is_some_and(toml::Table::is_empty);
         if !sets_no_key {
             script.insert(place.unwrap_or(script.len()), timed.clone());

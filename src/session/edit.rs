@@ -38,6 +38,14 @@ pub enum Edit {
         /// Targets by the names of the blocks, m.
         targets: BTreeMap<String, [f64; 2]>,
     },
+    /// Passes what the end effector of a block of an assembly holds to another block, whose own payload it takes; both
+    /// have to meet, in parallel planes.
+    HandOver {
+        /// Name of the block that hands over.
+        from: String,
+        /// Name of the block that takes.
+        to: String,
+    },
     /// Drags the relative joint angles to (a₁, a₂), rad, by turning a link; b is held.
     DragAngles {
         /// rad.
@@ -309,6 +317,8 @@ impl Edit {
             (Self::Set { change: earlier }, Self::Set { change: later }) => change::covers(later, earlier),
             // Each step of a drawing builds on those before.
             (Self::Sketch(_), Self::Sketch(_)) => false,
+            // Each passes on what the one before has passed.
+            (Self::HandOver { .. }, Self::HandOver { .. }) => false,
             _ => std::mem::discriminant(self) == std::mem::discriminant(later),
         }
     }
@@ -321,6 +331,7 @@ impl Edit {
             Self::PullLink { .. } => "link",
             Self::SlideB { .. } | Self::PoseB { .. } => "b",
             Self::Push { .. } => "push",
+            Self::HandOver { .. } => "payload",
             Self::Set { change } => match change.keys().next() {
                 Some(part) if is_of_machine(part) => "machine",
                 Some(part) => part,
@@ -340,6 +351,11 @@ impl Edit {
                 | Self::PullLink { .. }
                 | Self::SlideB { .. }
         )
+    }
+
+    /// Returns whether the edit acts on the machine in motion, and changes nothing in its scenario: a drag, or a hand-over.
+    pub fn acts_in_motion(&self) -> bool {
+        self.is_drag() || matches!(self, Self::HandOver { .. })
     }
 
     /// Returns whether the edit changes joint limits.
@@ -389,6 +405,7 @@ impl Edit {
             Self::PullLink { link, x, y, .. } => format!("pull link {link} to {x:.3}, {y:.3} m, the tip held"),
             Self::SlideB { b } => format!("slide b to {b:.3} rad"),
             Self::PoseB { b } => format!("pose at b = {b:.3} rad"),
+            Self::HandOver { from, to } => format!("{from} hands its payload to {to}"),
             Self::Push { x: 0.0, y: 0.0 } => "let go".into(),
             Self::Push { x, y } => format!("push with {x:.2}, {y:.2} N"),
             Self::Set { change } => title_of(change, inverse.and_then(|inverse| inverse.part("task"))),

@@ -28,7 +28,7 @@ pub(crate) fn check_edits(scenario: &Scenario) -> Result<(), (usize, String)> {
             return Err(wrong);
         }
         timed.edit.check().map_err(|check| of_entry(Refusal::from(check).to_string()))?;
-        if timed.edit.is_drag() || matches!(timed.edit, Edit::PoseB { .. }) {
+        if timed.edit.acts_in_motion() || matches!(timed.edit, Edit::PoseB { .. }) {
             continue;
         }
         now = changed(&now, &timed.edit).map_err(|why| of_entry(why.to_string()))?;

@@ -20,6 +20,13 @@ impl OtherFrames {
         }
     }
 
+    /// Replaces the frames of the newest step by those of the present step of a run.
+    pub(super) fn replace_last(&mut self, run: &Run) {
+        for (own, (_, frame)) in self.0.iter_mut().zip(run.shared().into_iter().flat_map(SharedRun::frames)) {
+            own.1.replace_last(frame);
+        }
+    }
+
     /// Returns the frames of a step.
     pub fn at(&self, step: usize) -> impl Iterator<Item = (usize, &Frame)> + Clone {
         self.0.iter().filter_map(move |(block, frames)| Some((*block, frames.get(step)?)))

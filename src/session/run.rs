@@ -296,7 +296,7 @@ impl Run {
             self.scenario = Arc::new(checked(changed(&self.scenario, edit)?, edit)?);
             return Ok(());
         }
-        if self.is_untouched() && !edit.is_drag() {
+        if self.is_untouched() && !edit.acts_in_motion() {
             let scenario = checked(after_start_edit(&self.scenario, edit, &self.queries)?, edit)?;
             *self = Self::planned(&scenario, &self.queries)?;
             return Ok(());
@@ -328,6 +328,12 @@ impl Run {
                     follower.set_target(Vector::new(*x, *y));
                     self.simulation.set_guide(Guide::Follow(follower));
                 }
+            }
+            Edit::HandOver { from, to } => {
+                let Some(shared) = &mut self.shared else {
+                    return Err(Refusal::Task("hand-over is for blocks of an assembly: want plant.payload".into()));
+                };
+                shared.hand_over(from, to)?;
             }
             Edit::DragAngles { a1, a2 } => {
                 let mut follower = self.follower()?;
@@ -478,6 +484,7 @@ impl Run {
                 };
                 Edit::DragBlocks { targets: blocks.iter().enumerate().filter_map(present).collect() }
             }
+            Edit::HandOver { .. } => edit.clone(),
             Edit::DragAngles { .. } => {
                 let planes = self.planes()?;
                 let [a1, a2] = match self.simulation.guide() {

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use stillbase_mechanics::assembly::{Attitude, SpatialLoads};
 use stillbase_mechanics::dynamics::BaseWrench;
 use stillbase_mechanics::joint_forces::InternalLoads;
+use stillbase_mechanics::machine::Payload;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Pose2, Vector};
 
 pub use crate::audit::Audit;
@@ -119,6 +120,8 @@ pub struct SharedBase {
     pub shift: f64,
     /// End effector of the machine in space, m.
     pub tip: Vector3<f64>,
+    /// What it holds.
+    pub held: Payload,
 }
 
 impl SharedBase {

@@ -186,19 +186,16 @@ pub fn signals_of_assembly<'a>(blocks: impl Iterator<Item = (&'a str, &'a Machin
             let (path, label) = (format!("{group}/{name}.{rest}"), format!("{name}: {}", signal.label));
             Signal { path, label, block, ..signal }
         }));
+        let mut add = |path: String, of: &str, i: usize, value: fn(&SharedBase, usize) -> f64| {
+            let [symbol, label, unit] = described(of);
+            let (symbol, label) = (symbol.into(), format!("{name}: {label}"));
+            let quantity = Quantity::OfSharedBase(i, value);
+            table.push(Signal { path, symbol, label, unit, drive: None, limit: None, block, quantity });
+        };
         for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
-            let [symbol, label, unit] = described(&format!("tip/{axis}"));
-            table.push(Signal {
-                path: format!("tip/{name}.{axis}"),
-                symbol: symbol.into(),
-                label: format!("{name}: {label}"),
-                unit,
-                drive: None,
-                limit: None,
-                block,
-                quantity: Quantity::OfSharedBase(i, |base, i| base.tip[i]),
-            });
+            add(format!("tip/{name}.{axis}"), &format!("tip/{axis}"), i, |base, i| base.tip[i]);
         }
+        add(format!("payload/{name}.mass"), "payload/mass", 0, |base, _| base.held.mass);
     }
     table.extend(of_shared_base(floats));
     table

@@ -17,6 +17,7 @@ pub const TESTS: &[Test] = tests![
     tower_is_current,
     joints_is_current,
     assembly_is_current,
+    assembly_hand_over_is_current,
     assembly_wrist_is_current,
     assembly_in_space_is_current,
     assembly_off_its_pin_is_current,
@@ -141,6 +142,10 @@ fn joints_is_current() {
 
 fn assembly_is_current() {
     is_current("assembly");
+}
+
+fn assembly_hand_over_is_current() {
+    is_current("assembly-hand-over");
 }
 
 fn assembly_wrist_is_current() {

@@ -107,7 +107,8 @@ fn built_in_scenarios_show_their_point() {
     assert_eq!(seen[0], ("four-freedoms", [t; 6], t));
     assert_eq!(seen[1], ("wrist-across", [t; 6], t));
     assert_eq!((seen[2].0, seen[2].2), ("arm-against-arm", t));
-    assert_eq!(seen[3], ("off-its-pin", [t, t, t, f, f, f], t));
+    assert_eq!((seen[3].0, seen[3].2), ("hand-over", t));
+    assert_eq!(seen[4], ("off-its-pin", [t, t, t, f, f, f], t));
 }
 
 #[test]

@@ -16,7 +16,7 @@ fn builtin(name: &str) -> AssemblyScenario {
     found.expect("an assembly")
 }
 
-const NAMES: [&str; 4] = ["four-freedoms", "wrist-across", "arm-against-arm", "off-its-pin"];
+const NAMES: [&str; 5] = ["four-freedoms", "wrist-across", "arm-against-arm", "hand-over", "off-its-pin"];
 
 /// Two blocks on one base: one in the plane, one across; the second reacts, as it is off balance.
 fn reacting() -> AssemblyScenario {

@@ -13,6 +13,7 @@ mod design;
 mod events;
 mod faults;
 mod hand;
+mod hand_over;
 mod led_blocks;
 mod limits;
 mod machine_file;

@@ -41,6 +41,7 @@ fn name(edit: &Edit) -> String {
     match edit {
         Edit::DragTarget { .. } => "drag-target".into(),
         Edit::DragBlocks { .. } => "drag-blocks".into(),
+        Edit::HandOver { .. } => "hand-over".into(),
         Edit::DragAngles { .. } => "drag-angles".into(),
         Edit::PullLink { .. } => "pull-link".into(),
         Edit::SlideB { .. } => "slide-b".into(),
@@ -232,6 +233,7 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         3 => (-0.5..3.5, -0.5..3.5).prop_map(|(a1, a2)| Edit::DragAngles { a1, a2 }),
         // A machine by itself refuses it.
         1 => (0.0..1.0, 0.0..1.0).prop_map(|(x, y)| Edit::DragBlocks { targets: [("arm".into(), [x, y])].into() }),
+        1 => Just(Edit::HandOver { from: "arm".into(), to: "other".into() }),
         1 => (0.0..1.0, 0.0..1.0).prop_map(|(x, y)| Edit::PullLink { link: "5".into(), along: 0.1, x, y }),
         3 => (1.8..3.2).prop_map(slide),
         2 => (2.2..2.7).prop_map(|b| Edit::PoseB { b }),
@@ -417,7 +419,7 @@ fn every_kind_of_edit_is_drawn() {
     let known = TimedEdit::from_table(entry).expect_err("there is no such edit");
     let kinds = known.split_once("one of ").expect("the kinds").1;
     let kinds: BTreeSet<String> = kinds.split(", ").map(str::to_owned).collect();
-    assert_eq!(kinds.len(), 9, "{kinds:?}");
+    assert_eq!(kinds.len(), 10, "{kinds:?}");
     // Settings by the parts of the table of keys.
     let part = |key: &Key| key.path.split('.').next().map(str::to_owned);
     let known: BTreeSet<String> =

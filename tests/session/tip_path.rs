@@ -216,6 +216,53 @@ fn the_least_time_keeps_all_limits() {
     assert!(why.contains("tip.block: no block \"nobody\": want one of"), "{why}");
 }
 
+/// With the fastest law some drive is near its limit nearly all the time, none passes it, the way is straight, and every
+/// leg takes less time than with another law.
+#[test]
+fn the_fastest_law_uses_the_limits_all_the_way() {
+    let assembly = builtin("carrier-and-arm");
+    for text in [
+        "to = [0.45, 0.55, 0.1]\n",
+        "from = [0.45, 0.35, 0.09]\nvia = [[0.40, 0.52, 0.14]]\nto = [0.52, 0.42, 0.06]\nclosed = true\n",
+    ] {
+        for choice in ["least-rates", "mid-range"] {
+            let of = |law: &str| {
+                let text = format!("{text}choice = \"{choice}\"\nlaw = \"{law}\"\n");
+                scenario(&assembly, &text).unwrap_or_else(|why| panic!("{text}{why}"))
+            };
+            let (fastest, quintic) = (of("fastest"), of("quintic"));
+            let all = frames(&fastest);
+            let path = &fastest.tip.as_ref().expect("a path").points;
+            let points: Vec<Vector3<f64>> = path.iter().map(|p| Vector3::from(*p)).collect();
+            let mut usage = Vec::new();
+            for frame in &all {
+                let p = frame.tips[1];
+                let off = points.windows(2).map(|pair| {
+                    let way = pair[1] - pair[0];
+                    let share = ((p - pair[0]).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+                    (p - pair[0] - share * way).norm()
+                });
+                let off = off.fold(f64::INFINITY, f64::min);
+                assert!(off < 1e-6, "{choice}: {off} m off at {} s", frame.time);
+                let mut most = 0.0_f64;
+                for (block, torques) in assembly.blocks().iter().zip(&frame.torques) {
+                    for (drive, torque) in block.machine.spec().drives.iter().zip(torques.iter()) {
+                        most = most.max(drive.torque_limit.map_or(0.0, |limit| torque.abs() / limit));
+                    }
+                }
+                usage.push(most);
+            }
+            let greatest = usage.iter().copied().fold(0.0, f64::max);
+            assert!((0.97..1.002).contains(&greatest), "{choice}: {greatest}");
+            let near = usage.iter().filter(|most| **most > 0.9).count() as f64 / usage.len() as f64;
+            assert!(near > 0.85, "{choice}: near a limit for {near} of the time");
+            let lasts = |of: &AssemblyScenario| of.tasks[1].scenario.task.samples.as_ref().expect("samples").duration();
+            let [short, long] = [&fastest, &quintic].map(lasts);
+            assert!(short < 0.9 * long, "{choice}: {short} s and {long} s");
+        }
+    }
+}
+
 /// What is refused says what would do, and that does.
 #[test]
 fn proposals_work_as_printed() {
@@ -247,7 +294,8 @@ fn proposals_work_as_printed() {
         ("to = [0.4, 0.4]\n", "want three numbers"),
         ("to = [0.45, 0.55, nan]\n", "want three numbers, m"),
         ("to = [0.45, 0.55, 0.1]\ntime = -1.0\n", "tip.time: is -1"),
-        ("to = [0.45, 0.55, 0.1]\nlaw = \"fastest\"\n", "tip.law: want quintic or septic"),
+        ("to = [0.45, 0.55, 0.1]\nlaw = \"trapezoidal\"\n", "tip.law: want quintic, septic or fastest"),
+        ("to = [0.45, 0.55, 0.1]\nlaw = \"fastest\"\ntime = 1.0\n", "tip.time: has no use with law = \"fastest\""),
         ("to = [0.45, 0.55, 0.1]\nb = { arm = nan }\n", "tip.b: b of arm is no angle"),
         (
             "to = [0.45, 0.55, 0.1]\nb = { leg = 1.0 }\n",

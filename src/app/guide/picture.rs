@@ -42,6 +42,7 @@ pictures![
     "workshop",
     "spacecraft",
     "assembly",
+    "assembly-hand-over",
     "assembly-wrist",
     "assembly-in-space",
     "assembly-off-its-pin",

@@ -66,7 +66,7 @@ impl Shown {
 }
 
 /// The pictures with their names.
-const PICTURES: [(&str, Shown); 17] = [
+const PICTURES: [(&str, Shown); 18] = [
     ("window", Shown::Window("case-3", 0.62, Vec::new)),
     ("spacecraft", Shown::Window("spacecraft", 0.75, Vec::new)),
     ("compare", Shown::Window("case-1", 0.62, side_by_side)),
@@ -77,6 +77,7 @@ const PICTURES: [(&str, Shown); 17] = [
     ("tower", Shown::Scene("case-3", 0.62, ViewKind::Tower)),
     ("joints", Shown::Scene("case-1", 0.5, ViewKind::Joints)),
     ("assembly", Shown::Window("arm-against-arm", 1.4, Vec::new)),
+    ("assembly-hand-over", Shown::Window("hand-over", 3.1, Vec::new)),
     ("assembly-wrist", Shown::Scene("wrist-across", 1.0, ViewKind::Space)),
     ("assembly-in-space", Shown::Scene("four-freedoms", 2.6, ViewKind::Space)),
     ("assembly-off-its-pin", Shown::Scene("off-its-pin", 0.5, ViewKind::Space)),

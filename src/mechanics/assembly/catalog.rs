@@ -7,10 +7,11 @@ use super::model::Assembly;
 use crate::machine::named;
 
 /// The files of the built-in assemblies.
-const TEXTS: [(&str, &str); 4] = [
+const TEXTS: [(&str, &str); 5] = [
     ("carrier-and-arm", include_str!("../../../assets/assemblies/carrier-and-arm.toml")),
     ("carrier-and-wrist", include_str!("../../../assets/assemblies/carrier-and-wrist.toml")),
     ("two-arms", include_str!("../../../assets/assemblies/two-arms.toml")),
+    ("two-loaded-arms", include_str!("../../../assets/assemblies/two-loaded-arms.toml")),
     ("wrist-off-its-pin", include_str!("../../../assets/assemblies/wrist-off-its-pin.toml")),
 ];
 

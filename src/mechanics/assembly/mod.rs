@@ -27,6 +27,7 @@ mod block;
 mod catalog;
 mod compliant_base;
 mod condition;
+mod exchange;
 mod file;
 mod free_base;
 mod model;

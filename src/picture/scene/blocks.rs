@@ -37,7 +37,7 @@ pub struct BlockStages {
 }
 
 /// Parts of names of items that are drawn of a block that is not led.
-const SHOWN: [&str; 3] = ["machine", "workspace", "plan/path"];
+const SHOWN: [&str; 4] = ["machine", "workspace", "plan/path", "payload"];
 /// Parts of names of items of the led block that state what it alone does to its base.
 const OF_ONE: [&str; 3] = ["reaction", "grid", "com"];
 /// Length of the longest arrow of force or moment, as a share of the reach.

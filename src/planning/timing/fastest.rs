@@ -7,7 +7,9 @@
 use crate::curves::path::Path;
 use crate::timing::keep::{PhaseBound, greatest_of, slow_to_keep};
 use crate::timing::law::PathProgress;
-use crate::timing::limits::{ConstraintRow, Constraints, DriveLimit, DriveLimits, LimitedQuantity, Stretches};
+use crate::timing::limits::{
+    ArmOnPath, ConstraintRow, Constraints, DriveLimit, DriveLimits, LimitedQuantity, Stretches,
+};
 use crate::timing::outcome::{FastestMotion, TimeError};
 use crate::timing::profile::{JerkPhase, Profile, after};
 use crate::timing::s_curve::s_curve;
@@ -86,7 +88,7 @@ fn planned(
         Some(stations) => stations.to_vec(),
         None => dense(path),
     };
-    let grid = PathConstraints::new(path, &constraints, nodes);
+    let grid = PathConstraints::new(&ArmOnPath { path, constraints: &constraints }, nodes);
     let (grid, timed, phase_bounds) = match stations {
         Some(_) => {
             let timed = curved(path, &grid, grid.fastest(), &constraints);
@@ -117,7 +119,8 @@ fn mended(
 ) -> (PathConstraints, Result<Timed, TimeError>, Option<Vec<PhaseBound>>) {
     let stretches = |at: &PathProgress| constraints.stretches(path, at);
     let jumps = jumps(path);
-    let (mut grid, mut found) = grid.fastest_refined(path, constraints);
+    let on_path = ArmOnPath { path, constraints };
+    let (mut grid, mut found) = grid.fastest_refined(&on_path);
     let mut refinements = 0..MAX_REFINEMENTS;
     loop {
         let timed = match curved(path, &grid, found, constraints) {
@@ -135,7 +138,7 @@ fn mended(
         if is_kept || past.len() + 1 != grid.s.len() || refinements.next().is_none() {
             return (grid, Ok(timed), Some(phase_bounds));
         }
-        (grid, found) = grid.mended(path, constraints, &past);
+        (grid, found) = grid.mended(&on_path, &past);
     }
 }
 

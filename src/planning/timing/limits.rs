@@ -158,6 +158,33 @@ pub(super) fn stretches(rows: &[ConstraintRow], speeds: &[f64], at: &PathProgres
     factors
 }
 
+/// Limits along a path: two-sided constraints that are linear in u and x, and largest rates.
+pub trait LimitsOnPath {
+    /// Returns the number of rows at each s, and that of limited rates.
+    fn counts(&self) -> [usize; 2];
+
+    /// Writes the rows at s, and to `speeds` each limited rate at ṡ = 1, divided by its limit. Returns the maximum x that
+    /// limits on rates allow, 1/s².
+    fn at(&self, s: f64, rows: &mut [ConstraintRow], speeds: &mut [f64]) -> f64;
+}
+
+/// The limits of an arm along one path.
+pub(super) struct ArmOnPath<'a> {
+    pub path: &'a Path,
+    pub constraints: &'a Constraints<'a>,
+}
+
+impl LimitsOnPath for ArmOnPath<'_> {
+    fn counts(&self) -> [usize; 2] {
+        [self.constraints.rows().len(), self.constraints.speeds()]
+    }
+
+    #[inline]
+    fn at(&self, s: f64, rows: &mut [ConstraintRow], speeds: &mut [f64]) -> f64 {
+        self.constraints.at(&self.path.at(s), rows, speeds)
+    }
+}
+
 /// The limits of an arm on its base as constraints along a path.
 #[derive(Clone, Debug)]
 pub struct Constraints<'a> {

@@ -11,11 +11,13 @@ mod s_curve;
 mod smooth;
 mod topp;
 pub mod usage;
+mod within;
 
 pub use fastest::fastest;
 pub use law::{PathProgress, TimeLaw};
-pub use limits::DriveLimits;
+pub use limits::{ConstraintRow, DriveLimits, LimitsOnPath};
 pub use outcome::{FastestMotion, TimeError};
 pub use profile::Profile;
 pub use s_curve::s_curve;
 pub use usage::Usage;
+pub use within::fastest_within;

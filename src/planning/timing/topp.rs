@@ -9,9 +9,8 @@
 //! order in Δ. A second pass lets u change over the interval by as much as it does in the first pass. The limit is then
 //! met at both ends, and T is accurate to second order.
 
-use crate::curves::path::Path;
 use crate::timing::law::PathProgress;
-use crate::timing::limits::{ConstraintRow, Constraints, MAX_ROWS, Stretches, stretches};
+use crate::timing::limits::{ConstraintRow, LimitsOnPath, Stretches, stretches};
 
 /// An x of this or more is treated as unlimited, 1/s².
 pub(super) const UNLIMITED: f64 = 1e20;
@@ -59,9 +58,9 @@ pub(super) enum NoTiming {
 }
 
 impl PathConstraints {
-    pub(super) fn new(path: &Path, constraints: &Constraints, s: Vec<f64>) -> Self {
-        let mut grid = Self::with_capacity([constraints.rows().len(), constraints.speeds()], s.len());
-        s.iter().for_each(|s| grid.push(path, constraints, *s));
+    pub(super) fn new(limits: &impl LimitsOnPath, s: Vec<f64>) -> Self {
+        let mut grid = Self::with_capacity(limits.counts(), s.len());
+        s.iter().for_each(|s| grid.push(limits, *s));
         Self { s, ..grid }
     }
 
@@ -81,17 +80,17 @@ impl PathConstraints {
     }
 
     /// Appends the rows of one more station, without adding it to `s`.
-    fn push(&mut self, path: &Path, constraints: &Constraints, s: f64) {
+    fn push(&mut self, limits: &impl LimitsOnPath, s: f64) {
         let (row, speed) = (self.rows.len(), self.speeds.len());
         self.rows.resize(row + self.m, ConstraintRow::default());
         self.speeds.resize(speed + self.per, 0.0);
-        let cap = constraints.at(&path.at(s), &mut self.rows[row..], &mut self.speeds[speed..]).min(10.0 * UNLIMITED);
+        let cap = limits.at(s, &mut self.rows[row..], &mut self.speeds[speed..]).min(10.0 * UNLIMITED);
         self.cap.push(cap);
         self.slow.push(cap.sqrt().recip());
     }
 
     /// Returns the grid with each interval divided into a given number of equal parts.
-    fn divided(&self, path: &Path, constraints: &Constraints, parts: &[usize]) -> Self {
+    fn divided(&self, limits: &impl LimitsOnPath, parts: &[usize]) -> Self {
         let total = 1 + parts.iter().sum::<usize>();
         let mut fine = Self::with_capacity([self.m, self.per], total);
         for i in 0..self.s.len() {
@@ -103,7 +102,7 @@ impl PathConstraints {
             let count = parts.get(i).copied().unwrap_or(1);
             for k in 1..count {
                 let s = self.s[i] + (self.s[i + 1] - self.s[i]) * k as f64 / count as f64;
-                fine.push(path, constraints, s);
+                fine.push(limits, s);
                 fine.s.push(s);
             }
         }
@@ -111,11 +110,7 @@ impl PathConstraints {
     }
 
     /// Finds the fastest motion on a grid that is refined wherever a limited quantity changes much within an interval.
-    pub(super) fn fastest_refined(
-        mut self,
-        path: &Path,
-        constraints: &Constraints,
-    ) -> (Self, Result<TimingSweep, NoTiming>) {
+    pub(super) fn fastest_refined(mut self, limits: &impl LimitsOnPath) -> (Self, Result<TimingSweep, NoTiming>) {
         let mut level = self.level();
         for _ in 0..MAX_REFINEMENTS {
             let Ok(x) = &level else { break };
@@ -123,7 +118,7 @@ impl PathConstraints {
             if most == 1 || parts.iter().sum::<usize>() > MAX_INTERVALS {
                 break;
             }
-            self = self.divided(path, constraints, &parts);
+            self = self.divided(limits, &parts);
             level = self.level();
         }
         let found = level.map(|x| self.risen(x));
@@ -132,19 +127,14 @@ impl PathConstraints {
 
     /// Finds the fastest motion on a grid that is refined where a profile exceeds a limit between two stations. `past`
     /// is the factor on time that each interval needs.
-    pub(super) fn mended(
-        self,
-        path: &Path,
-        constraints: &Constraints,
-        past: &[f64],
-    ) -> (Self, Result<TimingSweep, NoTiming>) {
+    pub(super) fn mended(self, limits: &impl LimitsOnPath, past: &[f64]) -> (Self, Result<TimingSweep, NoTiming>) {
         let parts: Vec<usize> = (0..past.len())
             .map(|i| {
                 let wide = self.s[i + 1] - self.s[i] > MIN_INTERVAL;
                 if past[i] > 1.0 + REPAIR_THRESHOLD && wide { PARTS_IF_EXCEEDED } else { 1 }
             })
             .collect();
-        let grid = self.divided(path, constraints, &parts);
+        let grid = self.divided(limits, &parts);
         let found = grid.fastest();
         (grid, found)
     }
@@ -212,7 +202,7 @@ impl PathConstraints {
         let n = self.s.len();
         let mut x = vec![0.0; n];
         let mut reach = vec![[0.0; 2]; n];
-        let mut space = Space::new();
+        let mut space = Space::of(self.m);
         for i in (0..rise.len()).rev() {
             space.set(self, i, rise[i], reach[i + 1]);
             let least = space.least().ok_or(NoTiming::At(i))?;
@@ -273,11 +263,11 @@ struct Strip {
     slope: f64,
 }
 
-/// Maximum number of strips of one interval: the rows at both ends, the controllable x at its end, the speeds in its
-/// middle, and spares.
-const MAX_STRIPS: usize = 2 * MAX_ROWS + 4;
-/// Maximum number of iterations of a search; each discards at least one pair of lines.
-const MAX_ITERATIONS: usize = 4 * MAX_STRIPS;
+/// Number of strips of one interval beside those of the rows at both ends: the controllable x at its end, the speeds in
+/// its middle.
+const OTHER_STRIPS: usize = 2;
+/// Maximum number of iterations of a search for each strip; each discards at least one pair of lines.
+const ITERATIONS_PER_STRIP: usize = 4;
 /// A coefficient of u below this fraction of the largest is treated as zero: the row then bounds x alone.
 const COEFFICIENT_TOLERANCE: f64 = 1e-13;
 /// Relative amount by which bounds may cross by rounding.
@@ -285,14 +275,15 @@ const CROSSING_TOLERANCE: f64 = 1e-12;
 
 /// The convex polygon of the pairs (u, x) that keep every row over one interval of the grid.
 struct Space {
-    strips: [Strip; MAX_STRIPS],
+    strips: Vec<Strip>,
     len: usize,
     x: [f64; 2],
 }
 
 impl Space {
-    fn new() -> Self {
-        Self { strips: [Strip::default(); MAX_STRIPS], len: 0, x: [0.0; 2] }
+    /// Returns an empty polygon for `rows` rows at each end.
+    fn of(rows: usize) -> Self {
+        Self { strips: vec![Strip::default(); 2 * rows + OTHER_STRIPS], len: 0, x: [0.0; 2] }
     }
 
     #[inline]
@@ -364,7 +355,7 @@ impl Space {
     #[inline]
     fn search(&self, start: f64, outwards: f64) -> Option<f64> {
         let mut x = start;
-        for _ in 0..MAX_ITERATIONS {
+        for _ in 0..ITERATIONS_PER_STRIP * self.strips.len() {
             if !(self.x[0]..=self.x[1]).contains(&x) {
                 return None;
             }

@@ -12,9 +12,6 @@ use crate::scenario::{Scenario, TaskKind};
 use crate::with_start_edits;
 use stillbase_mechanics::machine::Inertia;
 
-/// Largest sine of the angle between axes that count as parallel.
-const PARALLEL_SINE: f64 = 1e-6;
-
 impl AssemblyScenario {
     /// Binds the b of two blocks: the second follows the first, and later whichever is not led.
     ///
@@ -32,15 +29,8 @@ impl AssemblyScenario {
     /// # Errors
     /// If their planes are not parallel, or one has no pose constant.
     pub fn factor(&self, from: usize, to: usize) -> Result<f64, String> {
+        let along = self.assembly.parallel([from, to])?;
         let [name, other] = [from, to].map(|i| &self.assembly.blocks()[i].name);
-        if from == to {
-            return Err(format!("{name} stands there twice: want two blocks"));
-        }
-        let [z, z_other] = [from, to].map(|i| self.assembly.blocks()[i].mount.axes.column(2).into_owned());
-        if z.cross(&z_other).norm() > PARALLEL_SINE {
-            let angle = z.angle(&z_other).to_degrees();
-            return Err(format!("the planes of {name} and {other} are at {angle:.2}°: want parallel planes"));
-        }
         let momentum = |i: usize| {
             let inertia = Inertia::of(&self.tasks[i].scenario.machine);
             (inertia.is_invariant() && inertia.pose_inertia() != 0.0).then(|| inertia.momenta()[0])
@@ -49,7 +39,7 @@ impl AssemblyScenario {
         let lacks = if one.is_none() { name } else { other };
         let (one, all) =
             one.zip(all).ok_or_else(|| format!("{lacks} has no pose constant b: want a block that has one"))?;
-        Ok(-z.dot(&z_other) * one / all)
+        Ok(-along * one / all)
     }
 
     /// Returns the block whose b follows that of a block, with the factor.
@@ -88,6 +78,18 @@ impl AssemblyScenario {
 }
 
 impl AssemblyScenario {
+    /// Gives the block that is led the hand-overs of all: they concern two blocks.
+    pub(super) fn gather_hand_overs(&mut self, led: usize) {
+        let mut all = Vec::new();
+        for (_, task) in self.tasks.iter_mut().enumerate().filter(|(i, _)| *i != led) {
+            let edits = &mut task.scenario.edits;
+            all.extend(edits.extract_if(.., |timed| matches!(timed.edit, Edit::HandOver { .. })));
+        }
+        let edits = &mut self.tasks[led].scenario.edits;
+        edits.extend(all);
+        edits.sort_by_key(|timed| timed.step);
+    }
+
     /// Gives each block its part of the drags in space of one that was led.
     pub(super) fn share_drags(&mut self, led: usize) {
         let names: Vec<String> = self.assembly.blocks().iter().map(|block| block.name.clone()).collect();

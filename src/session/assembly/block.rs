@@ -50,6 +50,11 @@ impl AssemblyBlock {
         task.rests &= scenario.task == task.scenario.task && scenario.edits.is_empty();
         task.scenario = scenario;
         whole.share_drags(self.block);
+        if let Some(duration) = own.duration {
+            // What comes after the end of the session has not happened.
+            let end = (duration / whole.step).round() as u64;
+            whole.tasks.iter_mut().for_each(|task| task.scenario.edits.retain(|timed| timed.step <= end));
+        }
         (whole.name, whole.title, whole.summary) = (own.name.clone(), own.title.clone(), own.summary.clone());
         (whole.duration, whole.lead) = (own.duration, self.block);
         whole.follow(self.block);
@@ -89,8 +94,10 @@ impl AssemblyScenario {
     /// # Panics
     /// If there is no such block.
     pub fn leading(&self, block: usize) -> Scenario {
-        let own = self.tasks[block].scenario.clone();
-        let assembly = Some(Arc::new(AssemblyBlock { scenario: Arc::new(self.clone()), block }));
+        let mut whole = self.clone();
+        whole.gather_hand_overs(block);
+        let own = whole.tasks[block].scenario.clone();
+        let assembly = Some(Arc::new(AssemblyBlock { scenario: Arc::new(whole), block }));
         let (name, title, summary) = (self.name.clone(), self.title.clone(), self.summary.clone());
         Scenario { name, title, summary, duration: self.duration, assembly, ..own }
     }

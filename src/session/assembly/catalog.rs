@@ -1,10 +1,11 @@
 //! The scenarios of assemblies that come with the program.
 
 /// Name and text of each.
-const TEXTS: [(&str, &str); 4] = [
+const TEXTS: [(&str, &str); 5] = [
     ("four-freedoms", include_str!("../../../assets/assemblies/four-freedoms.toml")),
     ("wrist-across", include_str!("../../../assets/assemblies/wrist-across.toml")),
     ("arm-against-arm", include_str!("../../../assets/assemblies/arm-against-arm.toml")),
+    ("hand-over", include_str!("../../../assets/assemblies/hand-over.toml")),
     ("off-its-pin", include_str!("../../../assets/assemblies/off-its-pin.toml")),
 ];
 

@@ -16,6 +16,7 @@ mod frame;
 mod run;
 mod shared;
 mod tip;
+mod tip_time;
 
 pub use base::{AssemblyBase, FreeBase, SpringBase};
 pub use block::AssemblyBlock;

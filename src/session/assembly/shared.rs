@@ -13,7 +13,7 @@ use crate::changes::in_order;
 use crate::edit::{Edit, TimedEdit};
 use crate::refusal::Refusal;
 use crate::run::Run;
-use stillbase_mechanics::assembly::{BlockState, MAX_BLOCKS};
+use stillbase_mechanics::assembly::{Assembly, BlockState, MAX_BLOCKS};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::platform::{ChainBlock, FreedomChoice, PlatformChain, follow};
 use stillbase_query::{ByIdentity, Queries, QuickQuery, QuickWork};
@@ -24,6 +24,8 @@ use stillbase_simulation::frame::{Frame, Peaks, SharedBase};
 #[derive(Clone, Debug)]
 pub struct SharedRun {
     block: Arc<AssemblyBlock>,
+    /// The assembly from each step on at which its blocks have passed on what they held.
+    handed: Vec<(u64, Arc<Assembly>)>,
     others: Vec<Option<OtherBlock>>,
     /// Blocks and base at the present step.
     now: AssemblyFrame,
@@ -63,6 +65,11 @@ impl OtherBlock {
         self.run.advance();
         self.frame = self.run.frame();
     }
+}
+
+/// Returns the assembly after hand-overs; without one, that of the scenario.
+fn held_by<'a>(handed: &'a [(u64, Arc<Assembly>)], block: &'a AssemblyBlock) -> &'a Assembly {
+    handed.last().map_or(&block.scenario.assembly, |(_, assembly)| assembly)
 }
 
 /// Query for the other blocks at their start.
@@ -161,6 +168,7 @@ impl SharedRun {
             now: AssemblyFrame::of(&scenario.assembly, (led.step, led.time), states, &base),
             peaks: std::array::from_fn(|i| PerDrive::zeros(drives(i))),
             block: block.clone(),
+            handed: Vec::new(),
             others,
             base,
             verdict: AssemblyVerdict::default(),
@@ -196,18 +204,44 @@ impl SharedRun {
         &self.verdict
     }
 
+    /// Returns the assembly with what its blocks hold at the present step.
+    pub fn assembly(&self) -> &Assembly {
+        held_by(&self.handed, &self.block)
+    }
+
+    /// Returns the same at a step that has passed.
+    pub fn assembly_at(&self, step: u64) -> &Assembly {
+        let count = self.handed.partition_point(|(from, _)| *from <= step);
+        held_by(&self.handed[..count], &self.block)
+    }
+
+    /// Returns the place of a block by its name; `key` is where the name stands.
+    fn named(&self, key: &str, name: &str) -> Result<usize, Refusal> {
+        let blocks = self.block.scenario.assembly.blocks();
+        blocks.iter().position(|block| block.name == name).ok_or_else(|| {
+            let names: Vec<&str> = blocks.iter().map(|block| block.name.as_str()).collect();
+            let name = quote_clipped(name);
+            Refusal::Task(format!("{key} names no block: {name:?}; want one of {}", names.join(", ")))
+        })
+    }
+
     /// Checks that targets are those of blocks.
     ///
     /// # Errors
     /// If one is of no block.
     pub fn check_targets(&self, targets: &BTreeMap<String, [f64; 2]>) -> Result<(), Refusal> {
-        let blocks = self.block.scenario.assembly.blocks();
-        let unknown = targets.keys().find(|name| !blocks.iter().any(|block| block.name == **name));
-        unknown.map_or(Ok(()), |name| {
-            let names: Vec<&str> = blocks.iter().map(|block| block.name.as_str()).collect();
-            let name = quote_clipped(name);
-            Err(Refusal::Task(format!("targets names no block: {name:?}; want one of {}", names.join(", "))))
-        })
+        targets.keys().try_for_each(|name| self.named("targets", name).map(|_| ()))
+    }
+
+    /// Passes what a block holds to another, and what that holds to the first. The caller sees the present step anew.
+    ///
+    /// # Errors
+    /// If there is no such block, or as [`Assembly::exchanged`].
+    pub fn hand_over(&mut self, from: &str, to: &str) -> Result<(), Refusal> {
+        let pair = [self.named("from", from)?, self.named("to", to)?];
+        let handed = self.assembly().exchanged(pair, &self.now.states);
+        self.handed.push((self.now.step, Arc::new(handed.map_err(Refusal::Task)?)));
+        Ok(())
     }
 
     /// Returns the targets of the blocks by which the end effector of the led one comes to a point of its plane with a
@@ -292,7 +326,8 @@ impl SharedRun {
         if scenario.base.moves() {
             let after = self.states(led);
             let (h, count) = (scenario.step, scenario.assembly.blocks().len());
-            self.base.advance(&scenario.assembly, (h, led.time), |share| {
+            let assembly = held_by(&self.handed, &self.block);
+            self.base.advance(assembly, (h, led.time), |share| {
                 let mut states = before;
                 for i in 0..count {
                     states[i] = match share {
@@ -321,9 +356,9 @@ impl SharedRun {
     /// Takes over the state of the block that is led at the present step: after a step, or after an edit.
     pub fn see(&mut self, led: &Frame) {
         let states = self.states(led);
-        let AssemblyBlock { scenario, .. } = &*self.block;
-        self.now = AssemblyFrame::of(&scenario.assembly, (led.step, led.time), states, &self.base);
-        self.verdict.see(&scenario.assembly, &self.now);
+        self.now = AssemblyFrame::of(self.assembly(), (led.step, led.time), states, &self.base);
+        let assembly = held_by(&self.handed, &self.block);
+        self.verdict.see(assembly, &self.now);
         for (peaks, torques) in self.peaks.iter_mut().zip(&self.now.torques) {
             (0..peaks.len()).for_each(|k| peaks[k] = peaks[k].max(torques[k].abs()));
         }
@@ -336,7 +371,8 @@ impl SharedRun {
         let AssemblyVerdict { peaks, scale, turn, shift, .. } = self.verdict;
         let moves = self.block.scenario.base.moves();
         let tip = self.now.in_space(&self.now.tips[block]);
-        let shared = SharedBase { loads, attitude, origin, rate, moves, peaks, scale, turn, shift, tip };
+        let held = self.assembly().blocks()[block].machine.spec().payload;
+        let shared = SharedBase { held, loads, attitude, origin, rate, moves, peaks, scale, turn, shift, tip };
         let peaks = Peaks { torque: self.peaks[block], ..own.peaks };
         Frame { torque: self.now.torques[block], peaks, shared: Some(shared), ..own }
     }

@@ -8,15 +8,16 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::file::holding;
+use super::tip_time::{EASED_INSTANTS, TIME, fastest_leg, least_time};
 use crate::gentle_motion::gentle_motion;
-use stillbase_mechanics::assembly::{Assembly, BlockState, MAX_BLOCKS};
+use stillbase_mechanics::assembly::Assembly;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
+use stillbase_planning::Motion;
 use stillbase_planning::curves::given::MAX_SAMPLES;
 use stillbase_planning::curves::{Path, Samples};
 use stillbase_planning::platform::{ChainBlock, FreedomChoice, PlatformChain, StopReason, Stopped, follow, pose_at};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::{Profile, TimeLaw};
-use stillbase_planning::{Motion, Reference};
 use stillbase_settings::number::significant;
 use stillbase_settings::word::Choice;
 
@@ -29,15 +30,8 @@ const LEAST_INSTANTS: usize = 30;
 /// Largest distance of the end effector from its path between two instants, m.
 const PATH_TOLERANCE: f64 = 1e-7;
 
-/// Number of instants in each interval at which limits are checked.
-const CHECKS: usize = 8;
-
-/// Factor on the least time, for what torques do between these instants.
-const TIME_MARGIN: f64 = 1.0005;
-
-/// Largest coordinate, m, and range of the time, s.
+/// Largest coordinate, m.
 const MAX_PLACE: f64 = 1e6;
-const TIME: [f64; 2] = [1e-3, 3600.0];
 
 /// A path of the end effector of a block in axes of the base, while each block of its chain holds its b.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -99,7 +93,7 @@ pub(super) struct TipError {
     pub said: String,
 }
 
-fn wrong<T>(key: &'static str, said: impl Into<String>) -> Result<T, TipError> {
+pub(super) fn wrong<T>(key: &'static str, said: impl Into<String>) -> Result<T, TipError> {
     Err(TipError { key, said: said.into() })
 }
 
@@ -275,25 +269,31 @@ impl TipPath {
     /// If a place is not reached, or the way to it; the error says what would be.
     pub(super) fn plan(&self, assembly: &Assembly, rest: &[DriveAngles]) -> Result<TipPlan, TipError> {
         let law = self.law.unwrap_or(TimeLaw::Quintic);
-        if law.is_fastest() || !law.is_smooth() {
-            return wrong("law", "want quintic or septic; without time, the least time that keeps all limits is taken");
+        if law != TimeLaw::Fastest && (law.is_fastest() || !law.is_smooth()) {
+            return wrong("law", "want quintic, septic or fastest");
+        }
+        if law.is_fastest() && self.time.is_some() {
+            return wrong(
+                "time",
+                "has no use with law = \"fastest\", which finds it: want no time, or law = \"quintic\"",
+            );
         }
         if let Some(time) = self.time.filter(|time| !(TIME[0]..=TIME[1]).contains(time)) {
             return wrong("time", format!("is {time}: want {} to {} s", TIME[0], TIME[1]));
         }
+        let progress = |u: f64| if law.is_fastest() { u } else { law.at(u, 1.0).s };
         let of = TipChain::of(assembly, self.block(assembly)?, &self.b)?;
         let choice = self.choice.unwrap_or(FreedomChoice::LeastRates);
         let near = |choice| if choice == FreedomChoice::MidRange { of.chain.middles().0 } else { of.near.clone() };
         let points = self.points(&of, &near(choice))?;
-        let start = |choice| of.pose("from", &points[0].1, &near(choice), |_| true);
-        let from = start(choice)?;
+        let from = of.pose("from", &points[0].1, &near(choice), |_| true)?;
         // Each place by itself, so that the message names the one that is out of reach. A place that is proposed has a
         // way to it.
         for (i, (key, p)) in points.iter().enumerate().skip(1) {
             of.pose(key, p, &of.near, |proposed| {
                 let mut points = points[..=i].to_vec();
                 points[i].1 = *proposed;
-                let (_, places) = self.instants(&points, law, INSTANTS[0]);
+                let (_, places) = Self::instants(&points, progress, INSTANTS[0]);
                 points[i - 1].1 != *proposed && follow(&of.chain, choice, from.clone(), &places).is_ok()
             })?;
         }
@@ -305,51 +305,37 @@ impl TipPath {
         }
         let mut instants = INSTANTS[0].min(most);
         loop {
-            let (u, places) = self.instants(&points, law, instants);
-            let all = follow(&of.chain, choice, from.clone(), &places).or_else(|stopped| {
-                let reached = &places[stopped.point - 1];
-                let others = <FreedomChoice as Choice>::ALL.iter().copied().filter(|other| *other != choice);
-                let mut others = others
-                    .filter(|other| start(*other).is_ok_and(|from| follow(&of.chain, *other, from, &places).is_ok()));
-                let mend = match others.next() {
-                    Some(other) => format!("choice = \"{}\"", other.words().file),
-                    None => "other points or another b".to_owned(),
-                };
-                let why = of.why(assembly, &stopped);
-                wrong(
-                    "to",
-                    format!(
-                        "is not reached with choice = \"{}\": at {} {why}; want {mend}",
-                        choice.words().file,
-                        typed(reached)
-                    ),
-                )
-            })?;
-            let angles: Vec<Vec<DriveAngles>> = all.iter().map(|a| of.chain.lift(a.as_slice())).collect();
-            let samples = |whole: f64| -> Option<Vec<Samples>> {
-                let of_block = |block: usize| {
-                    let row = |(u, q): (&f64, &Vec<DriveAngles>)| [&[whole * u][..], &q[block]].concat();
-                    Samples::new(&u.iter().zip(&angles).map(row).collect::<Vec<_>>()).ok()
-                };
-                (0..of.blocks.len()).map(of_block).collect()
+            let (u, places) = Self::instants(&points, progress, instants);
+            let all = self.followed(&of, assembly, (choice, &from), &places)?;
+            let mut even = Instants { u, angles: all.iter().map(|a| of.chain.lift(a.as_slice())).collect() };
+            let legs: Vec<Instants> = match law.is_fastest() {
+                true => (0..legs).map(|leg| even.leg(leg * instants..(leg + 1) * instants + 1)).collect(),
+                false => vec![even.clone()],
             };
-            let Some(unit) = samples(1.0) else { return wrong("to", "gives no motion: want other points") };
-            let Some(motions) = unit
-                .iter()
-                .map(|own| Some(Motion { path: Path::Table(own.path(0.0)?), profile: Profile::running(1.0) }))
-                .collect::<Option<Vec<_>>>()
-            else {
-                return wrong("to", "gives no motion: want other points");
-            };
-            if 2 * instants <= INSTANTS[1].min(most) && self.strays(&of, &points, law, &motions) > PATH_TOLERANCE {
+            let motions: Option<Vec<Vec<Motion>>> = legs.iter().map(Instants::motions).collect();
+            let nowhere = || wrong("to", "gives no motion: want other points");
+            let Some(motions) = motions else { return nowhere() };
+            let strays = motions.iter().enumerate().map(|(leg, motions)| {
+                let points = if law.is_fastest() { &points[leg..leg + 2] } else { &points[..] };
+                strays(&of, points, progress, motions)
+            });
+            if 2 * instants <= INSTANTS[1].min(most) && strays.fold(0.0, f64::max) > PATH_TOLERANCE {
                 instants *= 2;
                 continue;
             }
+            if law.is_fastest() {
+                let count = EASED_INSTANTS.min(most);
+                let timed = motions.iter().map(|motions| fastest_leg(assembly, &of.blocks, motions, rest, count));
+                even = Instants::timed(&motions, &timed.collect::<Result<Vec<_>, _>>()?);
+            }
             let time = match self.time {
                 Some(time) => time,
-                None => least_time(assembly, &of.blocks, &motions, rest, u.len())?,
+                None => {
+                    let Some(motions) = even.motions() else { return nowhere() };
+                    least_time(assembly, &of.blocks, &motions, rest, even.u.len())?
+                }
             };
-            return match samples(time) {
+            return match even.samples(time) {
                 Some(samples) => Ok(TipPlan {
                     blocks: of.blocks,
                     samples,
@@ -358,6 +344,40 @@ impl TipPath {
                 None => wrong("time", "is too short for its points: want a longer one"),
             };
         }
+    }
+
+    /// Returns the angles of the chain at places along the path.
+    ///
+    /// # Errors
+    /// If the path is not followed to its end; the error says with which choice it is.
+    fn followed(
+        &self,
+        of: &TipChain,
+        assembly: &Assembly,
+        (choice, from): (FreedomChoice, &DVector<f64>),
+        places: &[Vector3<f64>],
+    ) -> Result<Vec<DVector<f64>>, TipError> {
+        follow(&of.chain, choice, from.clone(), places).or_else(|stopped| {
+            let start = |choice| {
+                let near = if choice == FreedomChoice::MidRange { of.chain.middles().0 } else { of.near.clone() };
+                of.pose("from", &places[0], &near, |_| true)
+            };
+            let reached = &places[stopped.point - 1];
+            let others = <FreedomChoice as Choice>::ALL.iter().copied().filter(|other| *other != choice);
+            let mut others =
+                others.filter(|other| start(*other).is_ok_and(|from| follow(&of.chain, *other, from, places).is_ok()));
+            let mend = match others.next() {
+                Some(other) => format!("choice = \"{}\"", other.words().file),
+                None => "other points or another b".to_owned(),
+            };
+            let why = of.why(assembly, &stopped);
+            let said = format!(
+                "is not reached with choice = \"{}\": at {} {why}; want {mend}",
+                choice.words().file,
+                typed(reached)
+            );
+            wrong("to", said)
+        })
     }
 
     /// Returns the shares of the time at which each leg begins, and at which the last ends.
@@ -372,11 +392,10 @@ impl TipPath {
         all.into_iter().map(|x| x / whole).collect()
     }
 
-    /// Returns instants as shares of the time, and the place at each, m.
+    /// Returns instants as shares of the time, and the place at each, m; `progress` is that along a leg over its time.
     fn instants(
-        &self,
         points: &[(&'static str, Vector3<f64>)],
-        law: TimeLaw,
+        progress: impl Fn(f64) -> f64,
         count: usize,
     ) -> (Vec<f64>, Vec<Vector3<f64>>) {
         let shares = Self::shares(points);
@@ -386,85 +405,73 @@ impl TipPath {
             for i in 1..=count {
                 let u = i as f64 / count as f64;
                 times.push(begin + run * u);
-                places.push(pair[0].1 + law.at(u, 1.0).s * (pair[1].1 - pair[0].1));
+                places.push(pair[0].1 + progress(u) * (pair[1].1 - pair[0].1));
             }
         }
         (times, places)
     }
-
-    /// Returns the largest distance of the end effector from its path midway between instants, m.
-    fn strays(&self, of: &TipChain, points: &[(&'static str, Vector3<f64>)], law: TimeLaw, motions: &[Motion]) -> f64 {
-        let (times, places) = self.instants(points, law, 2 * INSTANTS[0] + 1);
-        let off = |(u, p): (&f64, &Vector3<f64>)| {
-            let q: Vec<DriveAngles> = motions.iter().map(|motion| motion.at(*u).q).collect();
-            (of.chain.place(&of.chain.angles(&q)) - p).norm()
-        };
-        times.iter().zip(&places).map(off).fold(0.0, f64::max)
-    }
 }
 
-/// Returns the least time, s, in which motions over a unit of time keep all limits of their drives. Torques from motion and
-/// accelerations fall with the square of the time, rates with the time, and torques from weight stay.
-///
-/// # Errors
-/// If no drive has a limit, or weight alone passes one.
-fn least_time(
-    assembly: &Assembly,
-    blocks: &[usize],
+/// Returns the largest distance of the end effector from its path midway between instants, m.
+fn strays(
+    of: &TipChain,
+    points: &[(&'static str, Vector3<f64>)],
+    progress: impl Fn(f64) -> f64,
     motions: &[Motion],
-    rest: &[DriveAngles],
-    count: usize,
-) -> Result<f64, TipError> {
-    let none = PerDrive::zeros(0);
-    let at_rest = |q: &DriveAngles| BlockState { q: *q, qd: PerDrive::zeros(q.len()), qdd: PerDrive::zeros(q.len()) };
-    let mut states = [BlockState { q: DriveAngles(none), qd: none, qdd: none }; MAX_BLOCKS];
-    states.iter_mut().zip(rest).for_each(|(state, q)| *state = at_rest(q));
-    let (mut squared, mut is_limited) = (0.0_f64, false);
-    for i in 0..=CHECKS * (count - 1) {
-        let t = i as f64 / (CHECKS * (count - 1)) as f64;
-        let (mut torques, mut weights) = ([none; MAX_BLOCKS], [none; MAX_BLOCKS]);
-        for (place, motion) in blocks.iter().zip(motions) {
-            states[*place] = at_rest(&motion.at(t).q);
-        }
-        assembly.loads(&states, |i, of| weights[i] = of.torque);
-        for (place, motion) in blocks.iter().zip(motions) {
-            let Reference { q, qd, qdd } = motion.at(t);
-            states[*place] = BlockState { q, qd, qdd };
-        }
-        assembly.loads(&states, |i, of| torques[i] = of.torque);
-        for place in blocks {
-            let (block, state) = (&assembly.blocks()[*place], &states[*place]);
-            let motors = block.inertia.motors();
-            let [rates, accelerations] = [&state.qd, &state.qdd].map(|of| motors.to_motors(of));
-            for (k, drive) in block.machine.spec().drives.iter().enumerate() {
-                if let Some(limit) = drive.torque_limit {
-                    let (weight, motion) = (weights[*place][k], torques[*place][k] - weights[*place][k]);
-                    let room = limit - weight * motion.signum();
-                    if limit <= weight.abs() {
-                        let said = format!(
-                            "weight alone asks {:.4} N m of drive {} of {}: want other points",
-                            weight.abs(),
-                            drive.name,
-                            block.name
-                        );
-                        return wrong("time", said);
-                    }
-                    squared = squared.max(motion.abs() / room);
-                    is_limited = true;
-                }
-                if let Some(limit) = drive.speed_limit {
-                    squared = squared.max((rates[k].abs() / limit).powi(2));
-                    is_limited = true;
-                }
-                if let Some(limit) = drive.acceleration_limit {
-                    squared = squared.max(accelerations[k].abs() / limit);
-                    is_limited = true;
-                }
+) -> f64 {
+    let (times, places) = TipPath::instants(points, progress, 2 * INSTANTS[0] + 1);
+    let off = |(u, p): (&f64, &Vector3<f64>)| {
+        let q: Vec<DriveAngles> = motions.iter().map(|motion| motion.at(*u).q).collect();
+        (of.chain.place(&of.chain.angles(&q)) - p).norm()
+    };
+    times.iter().zip(&places).map(off).fold(0.0, f64::max)
+}
+
+/// Drive angles of the blocks of a chain at instants.
+#[derive(Clone, Debug)]
+struct Instants {
+    /// Shares of the time, from 0 to 1.
+    u: Vec<f64>,
+    /// Angles of each block, at each instant, rad.
+    angles: Vec<Vec<DriveAngles>>,
+}
+
+impl Instants {
+    /// Returns some of the instants, as a motion of their own.
+    fn leg(&self, range: std::ops::Range<usize>) -> Self {
+        let (u, angles) = (&self.u[range.clone()], self.angles[range].to_vec());
+        let (begin, end) = (u[0], u[u.len() - 1]);
+        Self { u: u.iter().map(|u| (u - begin) / (end - begin)).collect(), angles }
+    }
+
+    /// Returns instants of legs one after the other; `times` are those of each leg, s, with shares of it.
+    fn timed(legs: &[Vec<Motion>], times: &[Vec<[f64; 2]>]) -> Self {
+        let (mut all, mut begin) = (Self { u: Vec::new(), angles: Vec::new() }, 0.0);
+        for (motions, times) in legs.iter().zip(times) {
+            // A leg begins where the one before has ended.
+            let first = usize::from(!all.u.is_empty());
+            for [t, s] in &times[first..] {
+                all.u.push(begin + t);
+                all.angles.push(motions.iter().map(|motion| motion.at(s.clamp(0.0, 1.0)).q).collect());
             }
+            begin = all.u[all.u.len() - 1];
         }
+        all.u.iter_mut().for_each(|u| *u /= begin);
+        all
     }
-    if !is_limited || squared == 0.0 {
-        return wrong("time", "is not stated, and no drive of these blocks has a limit: want time, s");
+
+    /// Returns the samples of each block over a time, s; `None` if they are no motion.
+    fn samples(&self, whole: f64) -> Option<Vec<Samples>> {
+        let of_block = |block: usize| {
+            let row = |(u, q): (&f64, &Vec<DriveAngles>)| [&[whole * u][..], &q[block]].concat();
+            Samples::new(&self.u.iter().zip(&self.angles).map(row).collect::<Vec<_>>()).ok()
+        };
+        (0..self.angles.first()?.len()).map(of_block).collect()
     }
-    Ok((TIME_MARGIN * squared.sqrt()).clamp(TIME[0], TIME[1]))
+
+    /// Returns the motion of each block over a unit of time.
+    fn motions(&self) -> Option<Vec<Motion>> {
+        let motion = |own: &Samples| Some(Motion { path: Path::Table(own.path(0.0)?), profile: Profile::running(1.0) });
+        self.samples(1.0)?.iter().map(motion).collect()
+    }
 }

@@ -50,7 +50,7 @@ impl Session {
     /// Returns whether an edit applies at the present step rather than to the run as a whole.
     pub(super) fn concerns_now(&self, edit: &Edit) -> bool {
         match edit {
-            edit if edit.is_drag() => true,
+            edit if edit.acts_in_motion() => true,
             Edit::Push { .. } => true,
             Edit::PoseB { .. } => self.is_dragged(),
             // A dragged machine has the new limits from the present step on.
@@ -69,7 +69,7 @@ impl Session {
 
     /// Applies an edit at the present step. If an earlier frame is on display, the later frames are replaced.
     fn apply_now(&mut self, edit: Edit, watch: ProgressCallback<'_>) -> Result<(), Refusal> {
-        if self.is_full() && self.is_at_end() && (edit.is_drag() || matches!(edit, Edit::Push { .. })) {
+        if self.is_full() && self.is_at_end() && (edit.acts_in_motion() || matches!(edit, Edit::Push { .. })) {
             return Err(Refusal::Full { time: self.run.simulation().time() });
         }
         let before = self.document.clone();
@@ -146,6 +146,7 @@ impl Session {
         let frame = self.run.frame();
         self.machines.set_from(frame.step, &self.scenario().machine.clone());
         self.frames.replace_last(frame);
+        self.others.replace_last(&self.run);
     }
 
     /// Applies an edit while time passes, without an undo entry.

@@ -13,7 +13,7 @@ pub(crate) struct ScenarioWords;
 const A_BAR: &str = "the number of a bar in the drawing";
 const A_PIN: &str = "the number of a pin in the drawing";
 const A_DRIVE: &str = "the name of a drive in quotes";
-const AN_END: &str = "{ pin = 3 }, { bar = 2, along = 0.1 } or [0.3, 0.1], in m";
+const AN_END: &str = "{ pin = 3 }, { bar = 2, along = 0.1 } or [0.3, 0.1], in m; of a hand-over, the name of a block";
 
 /// What is no setting, or is a setting that a file has to state; `*` in an edit is its number.
 const STATED: &[WordRow] = &[

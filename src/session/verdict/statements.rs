@@ -400,8 +400,12 @@ impl Statements {
         }
         let mut machine = Statement::clone(&of_moving_machine(run, frame));
         if let Some(shared) = run.shared().filter(|_| machine.outcome == StatusLight::Good) {
-            let block = shared.block();
-            machine = Statement::of_block(&block.scenario.assembly.conditions(block.block)).unwrap_or(machine);
+            // What the block holds at the step of the frame may be another payload than at the start.
+            let conditions = shared.assembly_at(frame.step).conditions(shared.block().block);
+            machine = Statement::of_machine(&conditions.inertia);
+            if machine.outcome == StatusLight::Good {
+                machine = Statement::of_block(&conditions).unwrap_or(machine);
+            }
         }
         let mut plan = Statement::of_plan(run, frame, &inertia_of(run));
         if run.shared().is_some() && plan.outcome == StatusLight::Bad {

@@ -72,6 +72,7 @@ pub const SIGNALS: &[ResultRow] = &[
     signal("wheel/rate", "Ω", "rad/s", "rate of the reaction wheel").sign(TURN),
     signal("impulse/force", "∫|f|dt", "N s", "impulse of |f_B| so far"),
     signal("angular_impulse/moment", "∫|n|dt", "N m s", "impulse of the moment so far"),
+    signal("payload/mass", "m", "kg", "mass that the end effector of a block of an assembly holds"),
     signal("payload/held", "held", "1", "1 while the payload unknown to the model is held"),
     signal("wheel_saturated/now", "sat", "1", "1 while the wheel cannot give what is wanted"),
     signal("energy/kinetic", "T", "J", "kinetic energy"),

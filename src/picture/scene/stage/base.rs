@@ -157,9 +157,13 @@ impl BaseStage {
 
     /// Returns the drawn position of the payload, m, while the machine holds it.
     pub fn load_at(&self, shown: &DrawnFrame<'_>) -> Option<Vector> {
+        shown.frame.loaded.then(|| self.held_at(shown, self.load.offset))
+    }
+
+    /// Returns the drawn position of what is held at offsets along and across the link that holds it, m.
+    fn held_at(&self, shown: &DrawnFrame<'_>, [x, y]: [f64; 2]) -> Vector {
         let (drive, sign) = self.holder;
-        let [x, y] = self.load.offset;
-        shown.frame.loaded.then(|| shown.end_effector + shown.q.units()[drive] * Vector::new(x, y) * sign)
+        shown.end_effector + shown.q.units()[drive] * Vector::new(x, y) * sign
     }
 
     /// Converts a drawn position of the payload, m, to offsets along and across the link that holds it, m.
@@ -179,19 +183,23 @@ impl BaseStage {
         options: &ViewOptions,
     ) {
         let z = linkage.top();
-        if let Some(at) = self.load_at(shown) {
+        let of_block = shown.frame.shared.map(|shared| shared.held).filter(|held| held.mass > 0.0);
+        let of_plant = || Some((self.load_at(shown)?, self.load.mass));
+        let held = of_block.map(|held| (self.held_at(shown, held.offset), held.mass)).or_else(of_plant);
+        if let Some((at, mass)) = held {
             if (at - shown.end_effector).norm() > 1e-9 {
                 let stem = vec![point(shown.end_effector, z), point(at, z)];
                 scene.lines.push(Polyline::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
             let hot = options.highlighted == Some(Handle::Payload);
-            let radius = (5.0 + 5.0 * self.load.mass.sqrt()).min(12.0) as f32;
+            let radius = (5.0 + 5.0 * mass.sqrt()).min(12.0) as f32;
             let disc = Marker::disc("payload", point(at, z), radius, mix(palette.background, palette.ink, 0.55));
             scene.markers.push(disc.edged(palette.ink, if hot { 3.0 } else { 1.6 }));
-            let words = format!("{} kg", three_digits(self.load.mass));
+            let words = format!("{} kg", three_digits(mass));
             let offset = [0.0, -22.0];
             let own = Label::new("payload/mass", point(at, z), offset, words, palette.dim, 11.5, Anchor::Centre);
-            scene.labels.push(own.of_handle(Handle::Payload));
+            // What a block holds belongs to its assembly's file.
+            scene.labels.push(if of_block.is_some() { own } else { own.of_handle(Handle::Payload) });
         }
         let Some([x, y]) = options.external_force else { return };
         let force = Vector::new(x, y);
