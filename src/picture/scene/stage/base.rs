@@ -10,7 +10,7 @@ use crate::scene::linkage::{LinkageModel, PLATE_HALF_SIZE};
 use crate::scene::options::{Handle, ViewOptions};
 use crate::scene::palette::{Palette, faded, mix};
 use crate::scene::{Anchor, Label, Marker, Polyline, Scene, Transform, point, posed};
-use stillbase_mechanics::machine::Machine;
+use stillbase_mechanics::machine::{Machine, Payload};
 use stillbase_mechanics::planar::{Pose2, UnitVectors, Vector, unit};
 use stillbase_session::Run;
 use stillbase_simulation::frame::Frame;
@@ -184,20 +184,22 @@ impl BaseStage {
     ) {
         let z = linkage.top();
         let of_block = shown.frame.shared.map(|shared| shared.held).filter(|held| held.mass > 0.0);
-        let of_plant = || Some((self.load_at(shown)?, self.load.mass));
-        let held = of_block.map(|held| (self.held_at(shown, held.offset), held.mass)).or_else(of_plant);
-        if let Some((at, mass)) = held {
-            if (at - shown.end_effector).norm() > 1e-9 {
-                let stem = vec![point(shown.end_effector, z), point(at, z)];
+        let of_plant = || Some((point(self.load_at(shown)?, z), self.load.mass));
+        // In space a load is where it counts, whatever the heights at which bars are drawn: two arms meet there.
+        let in_space = |held: Payload| (point(self.held_at(shown, held.offset), held.axial), held.mass);
+        if let Some((at, mass)) = of_block.map(in_space).or_else(of_plant) {
+            let tip = point(shown.end_effector, z);
+            if (0..3).any(|i| (at[i] - tip[i]).abs() > 1e-6) {
+                let stem = vec![tip, at];
                 scene.lines.push(Polyline::new("payload/stem", [stem], 2.0, palette.ink).on_top());
             }
             let hot = options.highlighted == Some(Handle::Payload);
             let radius = (5.0 + 5.0 * mass.sqrt()).min(12.0) as f32;
-            let disc = Marker::disc("payload", point(at, z), radius, mix(palette.background, palette.ink, 0.55));
+            let disc = Marker::disc("payload", at, radius, mix(palette.background, palette.ink, 0.55));
             scene.markers.push(disc.edged(palette.ink, if hot { 3.0 } else { 1.6 }));
             let words = format!("{} kg", three_digits(mass));
             let offset = [0.0, -22.0];
-            let own = Label::new("payload/mass", point(at, z), offset, words, palette.dim, 11.5, Anchor::Centre);
+            let own = Label::new("payload/mass", at, offset, words, palette.dim, 11.5, Anchor::Centre);
             // What a block holds belongs to its assembly's file.
             scene.labels.push(if of_block.is_some() { own } else { own.of_handle(Handle::Payload) });
         }
