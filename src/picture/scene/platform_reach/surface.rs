@@ -137,7 +137,7 @@ impl Surface {
         let covers: Vec<Cover<'_>> = pairs.map(sum).collect();
         for (i, own) in covers.iter().enumerate() {
             // A curve and a curve have one sheet.
-            let is_sheet = own.ends[1].minus(&own.ends[0]).range().map(f64::abs) < [SAME_END * self.size; 2];
+            let is_sheet = own.ends[1].minus(&own.ends[0]).range()[1] <= SAME_END * self.size;
             for side in 0..(if is_sheet { 1 } else { 2 }) {
                 let end = &own.ends[side];
                 let mut open: Vec<Polygon> = vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]];
