@@ -126,9 +126,9 @@ impl Solid {
         self.0.iter().filter(|t| crosses(t)).count()
     }
 
-    /// Whether most of three rays leave it.
+    /// Whether a ray leaves it.
     fn holds(&self, noise: &mut Noise, p: &Vector3<f64>) -> bool {
-        (0..3).filter(|_| self.crossings(p, &direction(noise)) % 2 == 1).count() > 1
+        self.crossings(p, &direction(noise)) % 2 == 1
     }
 
     fn volume(&self) -> f64 {
@@ -254,7 +254,7 @@ fn every_pose_is_in_the_surface_and_nothing_beside_it_is_reached() {
         let two = Carried::new(noise, false, &mut |noise, i| spaces(noise, drives, i));
         let (mesh, _) = two.reach.at(two.b);
         let (solid, error) = (Solid::of(&mesh), 2.0 * two.reach.chord());
-        for _ in 0..150 {
+        for _ in 0..250 {
             let p = two.place(noise);
             assert!(solid.holds(noise, &p) || solid.distance(&p) < error, "{drives:?} {round}: {p:?} is left out");
         }
@@ -263,15 +263,14 @@ fn every_pose_is_in_the_surface_and_nothing_beside_it_is_reached() {
             // Some anywhere, some near.
             let near = two.place(noise) + noise.between(0.0, 0.1) * direction(noise);
             let p = if k % 2 == 0 { solid.around(noise) } else { near };
-            if solid.distance(&p) < error {
-                continue;
-            }
             let (holds, (reached, is_beside)) = (solid.holds(noise, &p), crossed.holds(&p));
-            assert_eq!(holds, reached, "{drives:?} {round}: {p:?}, {} m from the surface", solid.distance(&p));
+            // A ray may meet an edge.
+            let differs = holds != reached && solid.holds(noise, &p) != reached;
+            assert!(!differs || solid.distance(&p) < error, "{drives:?} {round}: {p:?} reached: {reached}");
             beside += usize::from(!holds);
             between += usize::from(!holds && !is_beside);
             // A descent may miss a pose, but finds none where there is none.
-            if k < 5 && !holds {
+            if k < 5 && !holds && solid.distance(&p) > error {
                 let found = two.is_found(&p);
                 assert!(found.is_err_and(|far| far > 0.25 * error), "{drives:?} {round}: {p:?} {found:?}");
             }
@@ -291,7 +290,7 @@ fn the_surface_is_closed_and_has_the_volume_of_what_is_reached() {
         assert!(solid.open_area() < 1e-5 * solid.area(), "{drives:?} {round}: {} m² open", solid.open_area());
         let crossed = Crossed::of(&two);
         let [low, high] = solid.extent();
-        let (count, size) = (10_000, high - low);
+        let (count, size) = (3_000, high - low);
         let within =
             (0..count).filter(|_| crossed.holds(&(low + Vector3::from_fn(|i, _| noise.between(0.0, size[i])))).0);
         let (share, box_volume) = (within.count() as f64 / f64::from(count), size.product());
@@ -309,7 +308,7 @@ fn the_surface_is_closed_and_has_the_volume_of_what_is_reached() {
             assert!(!turned || face.norm() < 1e-7, "{drives:?} {round}: a normal points inside");
         }
         // Lines lie on the surface.
-        for p in lines.iter().flatten().step_by(7) {
+        for p in lines.iter().flatten().step_by(41) {
             let off = solid.distance(&Vector3::from(p.map(f64::from)));
             assert!(off < 1e-5, "{drives:?} {round}: a line is {off} m off");
         }
