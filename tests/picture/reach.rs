@@ -320,7 +320,15 @@ fn the_surface_is_closed_and_has_the_volume_of_what_is_reached() {
 #[test]
 fn sheets_and_flat_sums_hold_what_is_reached_and_no_more() {
     let noise = &mut Noise::of(53);
-    let cases = [(false, [2, 2]), (true, [3, 3]), (true, [3, 2]), (true, [2, 2]), (true, [2, 3]), (true, [FAMILY, 2])];
+    let cases = [
+        (false, [2, 2]),
+        (true, [3, 3]),
+        (true, [3, 2]),
+        (true, [2, 2]),
+        (true, [2, 3]),
+        (true, [FAMILY, 2]),
+        (true, [FAMILY; 2]),
+    ];
     for (parallel, drives) in cases {
         for round in 0..2 {
             let two = Carried::new(noise, parallel, &mut |noise, i| spaces(noise, drives, i));
@@ -331,8 +339,20 @@ fn sheets_and_flat_sums_hold_what_is_reached_and_no_more() {
                 let p = two.place(noise);
                 assert!(solid.distance(&p) < error, "{parallel} {drives:?} {round}: {} m off", solid.distance(&p));
             }
+            // Just beside the outline of a flat sum nothing is reached.
+            let normal = two.blocks[0].mount.axes.column(2).into_owned();
+            let pairs: Vec<_> = lines.iter().flat_map(|line| line.windows(2)).filter(|_| parallel).collect();
+            for pair in pairs.iter().step_by(pairs.len() / 12 + 1) {
+                let [a, b] = [pair[0], pair[1]].map(|p| Vector3::from(p.map(f64::from)));
+                for side in [-3.0, 3.0] {
+                    let p = 0.5 * (a + b) + side * error * (b - a).cross(&normal).normalize();
+                    if solid.distance(&p) > error {
+                        let found = two.is_found(&p);
+                        assert!(found.is_err_and(|far| far > 0.2 * error), "{drives:?} {round}: {p:?} {found:?}");
+                    }
+                }
+            }
             for k in 0..24 {
-                let normal = two.blocks[0].mount.axes.column(2).into_owned();
                 let mut p = solid.around(noise);
                 if parallel {
                     p -= normal * normal.dot(&(p - solid.0[0][0]));

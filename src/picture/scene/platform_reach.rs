@@ -2,9 +2,8 @@
 //! space.
 //!
 //! Of the longest chain, the last block reaches a region or a curve in its plane, from wherever its carrier has its platform.
-//! So the reach is the [sum of both sets](surface); that of parallel planes is [flat](flat). Each b turns its own set about
-//! its pin. Where the carrier is carried itself, its reach is drawn from where the blocks below hold it now: what these add
-//! is left out.
+//! So the reach is the sum of both sets; that of parallel planes is flat. Each b turns its own set about its pin. Where the
+//! carrier is carried itself, its reach is drawn from where the blocks below hold it now: what these add is left out.
 
 mod flat;
 pub mod slices;
