@@ -29,8 +29,8 @@ const SEEN_REACH: f64 = 0.5;
 /// Maximum number of points of a trail.
 const MAX_TRAIL_POINTS: usize = 16_384;
 
-/// Opacity of surfaces as a share of that in the window: the viewer blends light, not sRGB values, so on a dark ground the
-/// same opacity looks stronger.
+/// Opacity of surfaces as a share of that in the window: the viewer blends light, not sRGB values, so on a dark ground
+/// the same opacity looks stronger.
 const OPACITY_SHARE: f32 = 0.5;
 
 /// Name of the entity of a base that floats.

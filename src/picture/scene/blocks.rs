@@ -116,8 +116,8 @@ impl Scene {
 }
 
 impl BlockStages {
-    /// Prepares the blocks of a run that are not led; `None` if its machine is no block of an assembly. `led` is the stage of
-    /// the block that is led.
+    /// Prepares the blocks of a run that are not led; `None` if its machine is no block of an assembly. `led` is the
+    /// stage of the block that is led.
     pub fn of(run: &Run, led: &Stage) -> Option<Self> {
         let shared = run.shared()?;
         let stages = shared.others().map(|(i, run)| (i, 0, Stage::of(run)));
@@ -147,8 +147,8 @@ impl BlockStages {
         run.shared().is_some_and(|shared| Arc::ptr_eq(shared.block(), &self.block) || **shared.block() == *self.block)
     }
 
-    /// Joins the meshes of all blocks with those of the led one, if these have changed, or the reach of the last platform
-    /// has with a b of the frames.
+    /// Joins the meshes of all blocks with those of the led one, if these have changed, or the reach of the last
+    /// platform has with a b of the frames.
     pub fn refresh<'a>(
         &mut self,
         led: &Stage,

@@ -1,9 +1,10 @@
-//! [`PlatformReach`]: where the last platform of blocks that carry each other can be while each holds its b, as a surface in
-//! space.
+//! [`PlatformReach`]: where the last platform of blocks that carry each other can be while each holds its b, as a
+//! surface in space.
 //!
-//! Of the longest chain, the last block reaches a region or a curve in its plane, from wherever its carrier has its platform.
-//! So the reach is the sum of both sets; that of parallel planes is flat. Each b turns its own set about its pin. Where the
-//! carrier is carried itself, its reach is drawn from where the blocks below hold it now: what these add is left out.
+//! Of the longest chain, the last block reaches a region or a curve in its plane, from wherever its carrier has its
+//! platform. So the reach is the sum of both sets; that of parallel planes is flat. Each b turns its own set about its
+//! pin. Where the carrier is carried itself, its reach is drawn from where the blocks below hold it now: what these add
+//! is left out.
 
 mod flat;
 pub mod slices;
@@ -29,8 +30,8 @@ use stillbase_mechanics::planar::{Vector, unit};
 /// Largest deviation of the surface, as a share of the size of both sets together.
 const CHORD: f64 = 4e-4;
 
-/// Least sine of the angle at which planes cross, and least width of a set across u, as a share of the size: below, the sum
-/// counts as flat.
+/// Least sine of the angle at which planes cross, and least width of a set across u, as a share of the size: below, the
+/// sum counts as flat.
 const LEAST_ANGLE: f64 = 1e-6;
 const LEAST_WIDTH: f64 = 1e-6;
 
@@ -126,7 +127,8 @@ impl PlatformReach {
         self.blocks[0]
     }
 
-    /// Returns the surface for the b of its blocks, rad, if it is another than the last one; `b` returns that of a block.
+    /// Returns the surface for the b of its blocks, rad, if it is another than the last one; `b` returns that of a
+    /// block.
     pub fn remade(&mut self, b: impl Fn(usize) -> Option<f64>) -> Option<Mesh> {
         let [below, above] = self.blocks;
         let now = [b(below)?, b(above)?];
@@ -140,8 +142,8 @@ impl PlatformReach {
         Some(mesh)
     }
 
-    /// Returns surface and lines at the b of the carrier and the last block, rad, in axes of the base, from the mount of the
-    /// carrier, m.
+    /// Returns surface and lines at the b of the carrier and the last block, rad, in axes of the base, from the mount
+    /// of the carrier, m.
     pub fn at(&self, b: [f64; 2]) -> (Mesh, Vec<Vec<[f32; 3]>>) {
         let [below, above] = &self.reaches;
         let normals = [below.normal(), above.normal()];

@@ -1,8 +1,8 @@
 //! The sum of two sets in one plane.
 //!
-//! Over two bands the sum of two intervals is that of two convex sets. So it meets a line of a level v in one interval, from
-//! the least to the greatest sum of their ends at levels that add up to v. These are straight, so their extremes are at the
-//! ends of the range of such levels. The sum of both sets has the union of all these intervals.
+//! Over two bands the sum of two intervals is that of two convex sets. So it meets a line of a level v in one interval,
+//! from the least to the greatest sum of their ends at levels that add up to v. These are straight, so their extremes
+//! are at the ends of the range of such levels. The sum of both sets has the union of all these intervals.
 
 use super::slices::{End, Slices};
 use super::strips::Piece;

@@ -1,7 +1,7 @@
 //! [`Slices`]: a set of points of a plane, by the intervals in which lines of one direction meet it.
 //!
-//! A point is (s, v): s along the lines, v across. The boundary is split into chains along which v grows. Between levels at
-//! which a chain begins, ends or has a corner, the ends of all intervals are smooth functions of v.
+//! A point is (s, v): s along the lines, v across. The boundary is split into chains along which v grows. Between
+//! levels at which a chain begins, ends or has a corner, the ends of all intervals are smooth functions of v.
 
 use stillbase_mechanics::planar::{Vector, cross, dot};
 

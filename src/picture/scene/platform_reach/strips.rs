@@ -1,5 +1,5 @@
-//! Intervals that change along one parameter, from 0 to 1: where one set of them is and another is not. [`outline`] finds the
-//! edges of what they cover.
+//! Intervals that change along one parameter, from 0 to 1: where one set of them is and another is not. [`outline`]
+//! finds the edges of what they cover.
 
 /// An end of an interval at both ends of the parameter; in between it is straight.
 pub type Line = [f64; 2];
@@ -67,8 +67,8 @@ pub fn differences(first: &[Interval], second: &[Interval]) -> Vec<Piece> {
     all
 }
 
-/// Returns the edges of trapezoids beside each other, as pairs of points (end, coordinate); an edge shorter than `same` is
-/// left out.
+/// Returns the edges of trapezoids beside each other, as pairs of points (end, coordinate); an edge shorter than `same`
+/// is left out.
 pub fn outline(pieces: &[Piece], same: f64) -> Vec<[[f64; 2]; 2]> {
     let mut edges = Vec::new();
     for piece in pieces {

@@ -7,9 +7,10 @@
 //! | v, w | unit vectors across u, in the plane of the first set and of the second | |
 //! | A(v), B(w) | intervals in which a line along u meets the first set, the second | m |
 //!
-//! A point of the sum is s u + v v + w w with s in A(v) + B(w), the sums of all pairs of their intervals. Over a rectangle in
-//! (v, w) between levels of both sets all ends are plane. So each end is cut where another interval covers it, and what is
-//! left bounds the sum. Across a level at which intervals appear or vanish, a wall does: there A(v) + B(w) jumps.
+//! A point of the sum is s u + v v + w w with s in A(v) + B(w), the sums of all pairs of their intervals. Over a
+//! rectangle in (v, w) between levels of both sets all ends are plane. So each end is cut where another interval covers
+//! it, and what is left bounds the sum. Across a level at which intervals appear or vanish, a wall does: there A(v) +
+//! B(w) jumps.
 
 use nalgebra::Vector3;
 
@@ -101,7 +102,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns the surface of the sum of two sets, and lines on it: the edges of its walls, and sections by planes of the first set.
+    /// Returns the surface of the sum of two sets, and lines on it: the edges of its walls, and sections by planes of
+    /// the first set.
     pub fn of(first: &Slices, second: &Slices, axes: Axes) -> (Mesh, Vec<Vec<[f32; 3]>>) {
         let [u, v, w] = axes.directions;
         let range = |of: &Slices| {
