@@ -357,19 +357,14 @@ impl AppState {
         let made = Views::base_views(queries, run, None);
         let views = Views::completed(&made, queries, run, Some(self.view_state.drives));
         let had_others = self.blocks.is_some();
-        match self.blocks.take().filter(|blocks| blocks.is_of(run)) {
-            Some(mut blocks) => {
-                blocks.join(views.stage());
-                self.blocks = Some(blocks);
-            }
-            None => {
-                self.blocks = BlockStages::of(run, views.stage());
-                if had_others || self.blocks.is_some() {
-                    self.view_state.framing.iter_mut().for_each(Framing::renew);
-                }
+        if !self.blocks.as_ref().is_some_and(|blocks| blocks.is_of(run)) {
+            self.blocks = BlockStages::of(run, views.stage());
+            if had_others || self.blocks.is_some() {
+                self.view_state.framing.iter_mut().for_each(Framing::renew);
             }
         }
         if Arc::ptr_eq(&views, &self.views) {
+            self.refresh_blocks();
             return;
         }
         if Views::has(self.view_state.view, run).is_err() {
@@ -385,6 +380,14 @@ impl AppState {
             self.view_state.framing.iter_mut().for_each(Framing::renew);
         }
         self.views = views;
+        self.refresh_blocks();
+    }
+
+    /// Updates what blocks of an assembly reach for the frame on display.
+    fn refresh_blocks(&mut self) {
+        if let Some(blocks) = &mut self.blocks {
+            blocks.refresh(self.views.stage(), self.session.frame(), self.session.others());
+        }
     }
 
     /// Updates everything that depends on the session.

@@ -3,15 +3,12 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 use stillbase_session::assembly::{AssemblyBlock, AssemblyVerdict};
-use stillbase_session::verdict::Verdict;
+use stillbase_session::verdict::{ATTITUDE_TOLERANCE, Verdict};
 use stillbase_session::{Run, WholeFrame};
 use stillbase_settings::number::{counted, fixed};
 use stillbase_simulation::frame::SharedBase;
 
 use super::output::TextTable;
-
-/// Largest turn of a base that keeps its attitude, rad.
-const KEPT_RAD: f64 = 1e-6;
 
 /// What the blocks of an assembly did to the base that they share.
 #[derive(JsonSchema, Serialize)]
@@ -72,7 +69,7 @@ impl SharedOutcome {
     /// Returns what fails with `--strict`.
     pub fn fault(&self) -> Option<&str> {
         let silent = self.silent_force.into_iter().chain(self.silent_moment).flatten().all(|is_so| is_so);
-        let kept = self.base_angle.is_none_or(|angle| angle <= KEPT_RAD);
+        let kept = self.base_angle.is_none_or(|angle| angle <= ATTITUDE_TOLERANCE);
         (!(silent && kept)).then_some(&self.sentence)
     }
 }

@@ -29,6 +29,10 @@ const SEEN_REACH: f64 = 0.5;
 /// Maximum number of points of a trail.
 const MAX_TRAIL_POINTS: usize = 16_384;
 
+/// Opacity of surfaces as a share of that in the window: the viewer blends light, not sRGB values, so on a dark ground
+/// the same opacity looks stronger.
+const OPACITY_SHARE: f32 = 0.5;
+
 /// Name of the entity of a base that floats.
 const BASE: &str = "base";
 
@@ -82,8 +86,10 @@ pub struct RecordedBlocks {
     root: EntityPath,
     palette: Palette,
     blocks: Vec<RecordedBlock>,
-    /// Force and moment on the base.
+    /// The path in space, force and moment on the base.
     loads: RecordingSpace,
+    /// What moves with the base: where the last platform can be.
+    on_base: RecordingSpace,
     base: Places,
     /// The stages of the blocks that are not led.
     stages: Option<BlockStages>,
@@ -102,6 +108,7 @@ impl RecordedBlocks {
         Self {
             blocks: of.scenario.assembly.blocks().iter().map(|own| block(&own.name)).collect(),
             loads: RecordingSpace::new(root.clone(), eye, palette.background),
+            on_base: RecordingSpace::new(under(root, BASE), eye, palette.background),
             base: places(under(root, BASE)),
             of: of.clone(),
             root: root.clone(),
@@ -138,6 +145,11 @@ impl RecordedBlocks {
             self.stages = BlockStages::of(run, led);
             self.draw_body(store)?;
         }
+        let others: Vec<(usize, Frame)> = shared_run.frames().collect();
+        let others = others.iter().map(|(i, frame)| (*i, frame));
+        if let Some(stages) = &mut self.stages {
+            stages.refresh(led, frame, others.clone());
+        }
         let plain = ViewOptions { notes: Vec::new(), ..options.clone() };
         for (i, block) in self.blocks.iter_mut().enumerate() {
             let (place, turn) = now.place(&self.of.scenario.assembly, i);
@@ -159,9 +171,13 @@ impl RecordedBlocks {
         if let (Some(stages), Some(shared)) = (&self.stages, &frame.shared) {
             self.base.rows.push(at, Placed::of(&shared.origin, &shared.attitude.0.to_rotation_matrix().into_inner()));
             let mut scene = Scene::new(self.palette.background, Arc::default());
-            let others: Vec<(usize, Frame)> = shared_run.frames().collect();
-            stages.in_space(&mut scene, frame, others.iter().map(|(i, frame)| (*i, frame)), &self.palette);
+            stages.in_space(&mut scene, frame, &self.palette);
             self.loads.draw(store, (at, Some(at)), &scene)?;
+            let mut scene = Scene::new(self.palette.background, stages.model().clone());
+            let mounts = stages.mounts(frame, others);
+            stages.reached(&mut scene, (&Matrix4::identity(), &mounts), &self.palette);
+            scene.solids.iter_mut().for_each(|solid| solid.colour[3] *= OPACITY_SHARE);
+            self.on_base.draw(store, (at, Some(at)), &scene)?;
         }
         Ok(())
     }
@@ -189,6 +205,7 @@ impl RecordedBlocks {
             block.space.write(store)?;
         }
         self.base.write(store)?;
+        self.on_base.write(store)?;
         self.loads.write(store)
     }
 

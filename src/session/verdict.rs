@@ -33,7 +33,7 @@ const MAX_LIMIT_RATIO: f64 = 1.0 + 1e-3;
 
 /// A free base keeps its attitude if it turns by no more than this, or by no more past a wanted angle, rad: 0.2 seconds of
 /// arc.
-const ATTITUDE_TOLERANCE: f64 = 1e-6;
+pub const ATTITUDE_TOLERANCE: f64 = 1e-6;
 
 /// Smaller tilting moments are treated as zero, N m.
 const MIN_TILT_N_M: f64 = 1e-9;

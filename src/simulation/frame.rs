@@ -127,19 +127,25 @@ pub struct SharedBase {
 impl SharedBase {
     /// Returns for each component of force and moment whether its peak so far counts as zero.
     pub fn silent(&self) -> [bool; 6] {
-        std::array::from_fn(|i| self.peaks[i] <= self.no_load(i))
+        silent(&self.peaks, &self.scale)
     }
 
     /// Returns whether all six components are zero now.
     pub fn is_unloaded(&self) -> bool {
         let now = self.loads.motion.components();
-        now.iter().enumerate().all(|(i, x)| x.abs() <= self.no_load(i).max(1e-15))
+        now.iter().enumerate().all(|(i, x)| x.abs() <= no_load(&self.scale, i).max(1e-15))
     }
+}
 
-    /// Returns the largest component that counts as zero, N or N m.
-    fn no_load(&self, component: usize) -> f64 {
-        REACTIONLESS_SHARE * self.scale[usize::from(component < 3)]
-    }
+/// Returns for each component of force, N, and moment, N m, whether its peak counts as zero beside the peaks of Σ|τ|, N m,
+/// and Σ m |a|, N.
+pub fn silent(peaks: &[f64; 6], scale: &[f64; 2]) -> [bool; 6] {
+    std::array::from_fn(|i| peaks[i] <= no_load(scale, i))
+}
+
+/// Returns the largest component that counts as zero, N or N m.
+fn no_load(scale: &[f64; 2], component: usize) -> f64 {
+    REACTIONLESS_SHARE * scale[usize::from(component < 3)]
 }
 
 /// Phase of a run.

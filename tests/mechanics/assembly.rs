@@ -506,3 +506,22 @@ fn a_frame_of_a_carried_block_is_beside_the_pin() {
     assert!(conditions.carried.beside.norm() < 1e-12);
     assert!(conditions.reasons().any(|why| why == Reacting::Tilt));
 }
+
+#[test]
+fn a_chain_leads_from_the_base_to_a_block() {
+    let block = |name: &str, on: &str| {
+        format!(
+            "[[block]]\nname = {name:?}\nmachine = \"two-drive-balanced\"\non = {on:?}\nat = [0, 0, 0]\n\
+             x = [1, 0, 0]\ny = [0, 1, 0]\n"
+        )
+    };
+    // In the file the last block is not the last of the longest chain, and two chains are equally long.
+    let blocks = [("top", "middle"), ("alone", "base"), ("middle", "low"), ("low", "base"), ("twin", "middle")];
+    let text = blocks.map(|(name, on)| block(name, on)).concat();
+    let text = format!("kind = \"assembly\"\nname = \"tower\"\n{text}{}", block("side", "alone"));
+    let assembly = parse(&text, "tower", &find).expect("an assembly");
+    assert_eq!(assembly.chain(0), [3, 2, 0]);
+    assert_eq!(assembly.chain(5), [1, 5]);
+    assert_eq!(assembly.chain(3), [3]);
+    assert_eq!(assembly.longest_chain(), [3, 2, 0]);
+}

@@ -9,6 +9,7 @@ mod palette;
 mod plots;
 #[cfg(feature = "ui")]
 mod portrait;
+mod reach;
 mod report;
 mod scene;
 #[cfg(feature = "render")]

@@ -70,6 +70,10 @@ fn blocks_are_recorded_where_they_are() {
             let want = frames.last().map(|frame| frame.in_space(&frame.tips[i])).expect("a frame");
             assert!((Vector3::from(end) - want).norm() < 1e-6);
         }
+        // Where the wrist reaches is there once: each block holds its b.
+        let reach = contents.at(&format!("/{name}/base/reach"));
+        let shapes = reach.iter().filter_map(|c| c.components().get_array("Mesh3D:vertex_positions".into()));
+        assert_eq!(shapes.map(|rows| rows.len()).sum::<usize>(), usize::from(name == "wrist-across"), "{name}");
         // Every signal, row by row; and the recording is simulated again to the same numbers.
         let (signals, mut rows) = (signals_of_whole(&scenario), Vec::new());
         replay(&scenario, |run, frame| {

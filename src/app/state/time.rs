@@ -8,6 +8,11 @@ const MAX_CATCH_UP_S: f64 = 0.1;
 impl AppState {
     /// Advances the run by a wall time, s, at the playback rate.
     pub fn pass(&mut self, wall: f64) {
+        self.go_on(wall);
+        self.refresh_blocks();
+    }
+
+    fn go_on(&mut self, wall: f64) {
         // While the session is being changed, time stands still: the new session must match the display.
         if self.background.is_changing() {
             self.due_s = 0.0;

@@ -159,6 +159,22 @@ impl Assembly {
         (0..self.blocks.len()).filter(move |i| self.blocks[*i].mount.on == carrier)
     }
 
+    /// Returns a block after all that carry it, the one on the base first.
+    ///
+    /// # Panics
+    /// If there is no such block.
+    pub fn chain(&self, block: usize) -> Vec<usize> {
+        let mut chain: Vec<usize> = std::iter::successors(Some(block), |i| self.blocks[*i].mount.on).collect();
+        chain.reverse();
+        chain
+    }
+
+    /// Returns the first of the longest chains of blocks that carry each other, the one on the base first.
+    pub fn longest_chain(&self) -> Vec<usize> {
+        let chains = (0..self.blocks.len()).rev().map(|block| self.chain(block));
+        chains.max_by_key(Vec::len).unwrap_or_default()
+    }
+
     /// Returns a block with all that it carries, on the base, and which blocks these are.
     pub fn branch(&self, block: usize) -> (Self, Vec<usize>) {
         let mut kept = vec![block];

@@ -30,11 +30,18 @@ pub struct BlockStages {
     model: Arc<MeshSet>,
     /// Largest reach of a block, m.
     reach: f64,
-    /// Where the last platform can be.
-    platform: Option<PlatformReach>,
+    /// Where the last platform can be, and index of its mesh.
+    platform: Option<(PlatformReach, usize)>,
+    /// Mesh of that.
+    reached: Mesh,
     /// Body of a base that floats, and its pose in the axes of the base.
     body: Option<(Mesh, Matrix4<f64>)>,
+    /// Index of its mesh.
+    body_mesh: usize,
 }
+
+/// Places of the blocks of an assembly, m.
+pub type Mounts = [Vector3<f64>; MAX_BLOCKS];
 
 /// Parts of names of items that are drawn of a block that is not led.
 const SHOWN: [&str; 4] = ["machine", "workspace", "plan/path", "payload"];
@@ -44,6 +51,8 @@ const OF_ONE: [&str; 3] = ["reaction", "grid", "com"];
 const ARROW_SHARE: f64 = 0.5;
 /// Length and half width of the head of an arrow, as shares of its length.
 const HEAD: [f64; 2] = [0.16, 0.06];
+/// The camera is set by one of so many points of where the last platform can be.
+const CONTENT_STEP: usize = 16;
 /// Opacity of the body of a base that floats.
 const BODY_OPACITY: f32 = 0.14;
 
@@ -107,7 +116,8 @@ impl Scene {
 }
 
 impl BlockStages {
-    /// Prepares the blocks of a run that are not led; `None` if its machine is no block of an assembly.
+    /// Prepares the blocks of a run that are not led; `None` if its machine is no block of an assembly. `led` is the
+    /// stage of the block that is led.
     pub fn of(run: &Run, led: &Stage) -> Option<Self> {
         let shared = run.shared()?;
         let stages = shared.others().map(|(i, run)| (i, 0, Stage::of(run)));
@@ -116,9 +126,19 @@ impl BlockStages {
         let none = Arc::new(MeshSet::default());
         let block = shared.block().clone();
         let body = block.scenario.base.body().map(body_of);
-        let platform = PlatformReach::of(run, shared);
-        let mut all = Self { block, others, led: none.clone(), model: none, reach, platform, body };
-        all.join(led);
+        let mut all = Self {
+            block,
+            others,
+            led: none.clone(),
+            model: none,
+            reach,
+            platform: None,
+            reached: Mesh::default(),
+            body,
+            body_mesh: 0,
+        };
+        let frames: Vec<(usize, Frame)> = shared.frames().collect();
+        all.refresh(led, &run.frame(), frames.iter().map(|(i, frame)| (*i, frame)));
         Some(all)
     }
 
@@ -127,42 +147,62 @@ impl BlockStages {
         run.shared().is_some_and(|shared| Arc::ptr_eq(shared.block(), &self.block) || **shared.block() == *self.block)
     }
 
-    /// Joins the meshes of all blocks with those of the led one, if these have changed.
-    pub fn join(&mut self, led: &Stage) {
+    /// Joins the meshes of all blocks with those of the led one, if these have changed, or the reach of the last
+    /// platform has with a b of the frames.
+    pub fn refresh<'a>(
+        &mut self,
+        led: &Stage,
+        frame: &Frame,
+        others: impl Iterator<Item = (usize, &'a Frame)> + Clone,
+    ) {
         let own = &led.linkage().model;
-        if Arc::ptr_eq(own, &self.led) {
+        if self.platform.is_none() {
+            let stage = |i: usize| if i == self.block.block { Some(led) } else { self.stage(i) };
+            self.platform = PlatformReach::of(&self.block.scenario.assembly, stage).map(|platform| (platform, 0));
+        }
+        let b = |i: usize| match i == self.block.block {
+            true => Some(frame.b_reference),
+            false => others.clone().find(|(other, _)| *other == i).map(|(_, frame)| frame.b_reference),
+        };
+        let remade = self.platform.as_mut().and_then(|(platform, _)| platform.remade(b));
+        if remade.is_none() && Arc::ptr_eq(own, &self.led) {
             return;
         }
+        self.reached = remade.unwrap_or_else(|| std::mem::take(&mut self.reached));
         self.led = own.clone();
         let mut meshes = own.meshes.clone();
         for (_, first, stage) in &mut self.others {
             *first = meshes.len();
             meshes.extend(stage.linkage().model.meshes.iter().cloned());
         }
+        self.body_mesh = meshes.len();
         meshes.extend(self.body.iter().map(|(mesh, _)| mesh.clone()));
+        if let Some((_, mesh)) = &mut self.platform {
+            *mesh = meshes.len();
+            meshes.push(self.reached.clone());
+        }
         self.model = Arc::new(MeshSet { meshes });
     }
 
-    /// Returns where each block is: the transformation from the axes of its plane to the world.
-    fn places<'a>(&self, led: &Frame, others: impl Iterator<Item = (usize, &'a Frame)>) -> [Matrix4<f64>; MAX_BLOCKS] {
+    /// Returns where the blocks are mounted, m, in axes of the base.
+    pub fn mounts<'a>(&self, led: &Frame, others: impl Iterator<Item = (usize, &'a Frame)>) -> Mounts {
         let none = PerDrive::zeros(0);
         let state = |frame: &Frame| BlockState { q: frame.q, qd: frame.qd, qdd: frame.qdd };
         let mut states = [BlockState { q: DriveAngles(none), qd: none, qdd: none }; MAX_BLOCKS];
         states[self.block.block] = state(led);
         others.for_each(|(i, frame)| states[i] = state(frame));
-        let assembly = &self.block.scenario.assembly;
-        let mounts = assembly.mounts(&states);
-        let base = led.shared.as_ref().map_or_else(Matrix4::identity, base_place);
-        let mut all = [Matrix4::identity(); MAX_BLOCKS];
-        for (place, (block, mount)) in all.iter_mut().zip(assembly.blocks().iter().zip(mounts)) {
-            *place = base * Matrix4::new_translation(&mount) * block.mount.axes.to_homogeneous();
-        }
-        all
+        self.block.scenario.assembly.mounts(&states)
+    }
+
+    /// Returns where a block is: the transformation from the axes of its plane to the world.
+    fn placed(&self, block: usize, base: &Matrix4<f64>, mounts: &Mounts) -> Matrix4<f64> {
+        let axes = self.block.scenario.assembly.blocks()[block].mount.axes.to_homogeneous();
+        base * Matrix4::new_translation(&mounts[block]) * axes
     }
 
     /// Returns where the led block is: the transformation from the axes of its plane to the world.
     pub fn place<'a>(&self, led: &Frame, others: impl Iterator<Item = (usize, &'a Frame)>) -> Matrix4<f64> {
-        self.places(led, others)[self.block.block]
+        self.placed(self.block.block, &base_of(led), &self.mounts(led, others))
     }
 
     /// Returns the scene of all blocks; `own` is that of the led block by itself.
@@ -173,14 +213,15 @@ impl BlockStages {
         others: impl Iterator<Item = (usize, &'a Frame)> + Clone,
         options: &ViewOptions,
     ) -> Scene {
-        let (places, all) = (self.places(led, others.clone()), others.clone());
+        let (base, mounts) = (base_of(led), self.mounts(led, others.clone()));
+        let place = |i: usize| self.placed(i, &base, &mounts);
         let palette = palette(options.theme);
         let blocks = self.block.scenario.assembly.blocks();
         let is_carried = |i: usize| blocks[i].mount.on.is_some();
         let plain = ViewOptions { theme: options.theme, show_hints: false, ..ViewOptions::default() };
         let keeps = |i: usize, name: &str| !(is_carried(i) && is_part(name, "machine/base"));
         own.retain(|name| keeps(self.block.block, name) && !OF_ONE.iter().any(|of| is_part(name, of)));
-        let mut scene = own.moved(&places[self.block.block]);
+        let mut scene = own.moved(&place(self.block.block));
         scene.model = self.model.clone();
         for (i, frame) in others {
             let Some((_, first, stage)) = self.others.iter().find(|(of, ..)| *of == i) else { continue };
@@ -189,49 +230,47 @@ impl BlockStages {
             // Of workspaces that are not at hand, the boundary is enough.
             other.areas.clear();
             other.solids.retain(|solid| !is_part(&solid.name, "workspace"));
-            scene.add(other.moved(&places[i]), &blocks[i].name, *first);
+            scene.add(other.moved(&place(i)), &blocks[i].name, *first);
         }
-        if let (Some((_, pose)), Some(shared)) = (&self.body, &led.shared) {
+        if let (Some((_, pose)), Some(_)) = (&self.body, &led.shared) {
             scene.solids.push(Solid {
                 name: "base".into(),
-                mesh: self.model.meshes.len() - 1,
-                world_from_item: transform(&(base_place(shared) * pose)),
+                mesh: self.body_mesh,
+                world_from_item: transform(&(base * pose)),
                 colour: faded(palette.dim, BODY_OPACITY),
                 changes: ItemChanges::Pose,
             });
         }
-        for (block, place) in blocks.iter().zip(&places) {
-            let at = place.transform_point(&Point3::origin()).map(|x| x as f32).into();
+        for (block, mount) in blocks.iter().zip(&mounts) {
+            let at = base.transform_point(&Point3::from(*mount)).map(|x| x as f32).into();
             let is_led = block.name == self.block.name();
             let tone = if is_led { palette.ink } else { palette.dim };
             let label = Label::new("blocks", at, [0.0, 22.0], &block.name, tone, 12.5, Anchor::Centre);
             scene.labels.push(label);
         }
-        self.in_space(&mut scene, led, all, &palette);
+        self.reached(&mut scene, (&base, &mounts), &palette);
+        self.in_space(&mut scene, led, &palette);
         scene
     }
 
-    /// Adds what is of no single block: where the last platform can be, and what reaches the base.
-    pub fn in_space<'a>(
-        &self,
-        scene: &mut Scene,
-        led: &Frame,
-        others: impl Iterator<Item = (usize, &'a Frame)> + Clone,
-        palette: &Palette,
-    ) {
-        if let Some(platform) = &self.platform {
-            let places = self.places(led, others.clone());
-            let frame = |i: usize| match i == self.block.block {
-                true => Some(led),
-                false => others.clone().find(|(other, _)| *other == i).map(|(_, frame)| frame),
-            };
-            let base = led.shared.as_ref().map_or_else(Matrix4::identity, base_place);
-            let from = places[platform.carrier()].transform_point(&Point3::origin()).coords;
-            let place = |p: &Vector3<f64>| (from + base.transform_vector(p)).map(|x| x as f32).into();
-            platform.draw(scene, palette, frame, place);
+    /// Adds where the last platform can be; `base` takes axes of the base to those of the scene, whose model is
+    /// [`model`](Self::model).
+    pub fn reached(&self, scene: &mut Scene, (base, mounts): (&Matrix4<f64>, &Mounts), palette: &Palette) {
+        if let Some((platform, mesh)) = &self.platform {
+            let place = base * Matrix4::new_translation(&mounts[platform.carrier()]);
+            platform.draw(scene, palette, *mesh, transform(&place));
         }
+    }
+
+    /// Returns the meshes of all blocks.
+    pub fn model(&self) -> &Arc<MeshSet> {
+        &self.model
+    }
+
+    /// Adds the path in space, and what reaches the base.
+    pub fn in_space(&self, scene: &mut Scene, led: &Frame, palette: &Palette) {
         if let Some(tip) = &self.block.scenario.tip {
-            let base = led.shared.as_ref().map_or_else(Matrix4::identity, base_place);
+            let base = base_of(led);
             let place = |p: &[f64; 3]| base.transform_point(&Point3::from(*p)).map(|x| x as f32).into();
             let strip: Vec<[f32; 3]> = tip.points.iter().map(place).collect();
             scene.lines.push(Polyline::new("tip", vec![strip], 1.6, palette.ink).dashed(5.0, 4.0));
@@ -282,10 +321,10 @@ impl BlockStages {
         led: &Frame,
         others: impl Iterator<Item = (usize, &'a Frame)> + Clone,
     ) -> ViewContent {
-        let places = self.places(led, others.clone());
+        let (base, mounts) = (base_of(led), self.mounts(led, others.clone()));
         // What lies below a point is seen, too: bodies have heights.
         let moved = |points: Vec<[f64; 3]>, i: usize, floor: f64| {
-            let place = places[i];
+            let place = self.placed(i, &base, &mounts);
             let both = points.into_iter().flat_map(move |[x, y, z]| [[x, y, z], [x, y, floor]]);
             both.map(move |point| place.transform_point(&point.into()).into())
         };
@@ -295,19 +334,25 @@ impl BlockStages {
             let Some(stage) = self.stage(i) else { continue };
             first.extend(moved(stage.content(frame, &[]).first, i, stage.linkage().floor()));
         }
-        if let Some((_, pose)) = &self.body {
-            let base = led.shared.as_ref().map_or_else(Matrix4::identity, base_place) * pose;
-            let corners = self.model.meshes.last().map_or(&[][..], |mesh| &mesh.positions);
-            let corners = corners.iter().map(|p| base.transform_point(&Point3::from(p.map(f64::from))));
+        if let Some((mesh, pose)) = &self.body {
+            let base = base * pose;
+            let corners = mesh.positions.iter().map(|p| base.transform_point(&Point3::from(p.map(f64::from))));
             first.extend(corners.map(<[f64; 3]>::from));
         }
-        ViewContent { first, then: moved(own.then, own_place, floor).collect() }
+        let mut then: Vec<[f64; 3]> = moved(own.then, own_place, floor).collect();
+        if let Some((platform, _)) = &self.platform {
+            let place = base * Matrix4::new_translation(&mounts[platform.carrier()]);
+            let seen = self.reached.positions.iter().step_by(CONTENT_STEP);
+            then.extend(seen.map(|p| <[f64; 3]>::from(place.transform_point(&Point3::from(p.map(f64::from))))));
+        }
+        ViewContent { first, then }
     }
 }
 
-/// Returns where a shared base is: the transformation from its axes to the world.
-fn base_place(shared: &SharedBase) -> Matrix4<f64> {
-    Matrix4::new_translation(&shared.origin) * shared.attitude.0.to_homogeneous()
+/// Returns where the base of a frame is: the transformation from its axes to the world.
+fn base_of(frame: &Frame) -> Matrix4<f64> {
+    let place = |shared: &SharedBase| Matrix4::new_translation(&shared.origin) * shared.attitude.0.to_homogeneous();
+    frame.shared.as_ref().map_or_else(Matrix4::identity, place)
 }
 
 /// Returns the box of even density with the mass and the inertia of a base, and its pose in the axes of the base.

@@ -41,7 +41,8 @@ pub mod overlay;
 pub mod palette;
 #[doc(hidden)]
 pub mod pick;
-mod platform_reach;
+#[doc(hidden)]
+pub mod platform_reach;
 #[doc(hidden)]
 pub mod pointer;
 #[doc(hidden)]

@@ -1,160 +1,208 @@
-//! [`PlatformReach`]: where the last platform of blocks that carry each other can be while each holds its b, as lines on
-//! surfaces in space.
+//! [`PlatformReach`]: where the last platform of blocks that carry each other can be while each holds its b, as a
+//! surface in space.
 //!
-//! The last block reaches a region or a curve in its plane, from wherever its carrier has its platform. So the reach is the
-//! sum of both sets, and its surfaces are among the sums of their boundaries: of two regions, sums of points at which both
-//! boundaries face the same way along the line in which their planes cross. Each b turns its own set about its pin.
+//! Of the longest chain, the last block reaches a region or a curve in its plane, from wherever its carrier has its
+//! platform. So the reach is the sum of both sets; that of parallel planes is flat. Each b turns its own set about its
+//! pin. Where the carrier is carried itself, its reach is drawn from where the blocks below hold it now: what these add
+//! is left out.
 
-use std::sync::Arc;
+mod flat;
+pub mod slices;
+mod strips;
+mod surface;
+mod traced;
+
+use std::array;
 
 use nalgebra::{Matrix3, Vector3};
 
+use self::flat::FlatSum;
+use self::slices::{Lines, Slices};
+use self::strips::outline;
+use self::surface::{Axes, Surface};
+use self::traced::Traced;
 use super::palette::{Palette, faded};
-use super::{Polyline, Scene, Strips};
+use super::stage::Stage;
+use super::{ItemChanges, Mesh, Polyline, Scene, Solid, Strips, Transform};
+use stillbase_mechanics::assembly::Assembly;
 use stillbase_mechanics::planar::{Vector, unit};
-use stillbase_planning::pose_space::{Outline, PoseSpace};
-use stillbase_session::Run;
-use stillbase_session::assembly::SharedRun;
-use stillbase_simulation::frame::Frame;
 
-/// Number of lines along each boundary, and of points on each line.
-const LINES: [usize; 2] = [16, 36];
-const POINTS: usize = 72;
+/// Largest deviation of the surface, as a share of the size of both sets together.
+const CHORD: f64 = 4e-4;
 
-/// Opacity and width, px, of the lines.
-const OPACITY: f32 = 0.3;
-const WIDTH_PX: f32 = 0.8;
+/// Least sine of the angle at which planes cross, and least width of a set across u, as a share of the size: below, the
+/// sum counts as flat.
+const LEAST_ANGLE: f64 = 1e-6;
+const LEAST_WIDTH: f64 = 1e-6;
 
-/// The boundary of what a block reaches in its plane at a b.
+/// Direction of the lines by which a flat sum is found, rad from x: none of the boundaries is likely to run along it.
+const FLAT_LINES_RAD: f64 = 0.618;
+
+/// The surface stays as it is for changes of b up to this, rad: they move it by less than is seen.
+const SAME_B_RAD: f64 = 1e-6;
+
+/// Opacity of the surface.
+const OPACITY: f32 = 0.06;
+/// Opacity and width, px, of the lines on it.
+const LINE_OPACITY: f32 = 0.3;
+const LINE_WIDTH_PX: f32 = 0.9;
+
+/// What a block reaches in its plane.
 #[derive(Clone, Debug)]
-struct BlockReach {
-    block: usize,
-    /// Closed loops or one curve, m from the base pin.
-    lines: Vec<Vec<Vector>>,
-    /// Whether the lines bound a region, which is to their left.
-    bounds: bool,
-    b: f64,
-    lambda_sum: f64,
-    axes: Matrix3<f64>,
-    height: f64,
+pub struct BlockReach {
+    /// The set at b = 0, m from the base pin.
+    pub set: Lines,
+    /// Σλ.
+    pub lambda_sum: f64,
+    /// Directions x, y, z of its plane in axes of the base, as columns.
+    pub axes: Matrix3<f64>,
+    /// Height of the end effector along z, m.
+    pub height: f64,
 }
 
 impl BlockReach {
-    fn of(block: usize, run: &Run, axes: Matrix3<f64>, height: f64) -> Option<Self> {
-        let space: &Arc<PoseSpace> = run.pose_space().ok()?;
-        let b = run.frame().b_reference;
-        let Outline { loops, curve, .. } = space.outline(b);
-        let close = |mut line: Vec<[f64; 2]>| {
-            line.extend(line.first().copied());
-            line
-        };
-        let bounds = !loops.is_empty();
-        let all = if loops.is_empty() { vec![curve] } else { loops.into_iter().map(close).collect() };
-        let lines = all.iter().filter(|line| line.len() > 1).map(|line| evenly(line, POINTS)).collect();
-        Some(Self { block, lines, bounds, b, lambda_sum: space.lambda_sum(), axes, height })
-    }
-
-    /// Returns the lines at another b, in axes of the base; each point with how far the boundary faces along a direction,
-    /// 0 on a curve.
-    fn at(&self, b: f64, along: &Vector3<f64>) -> Vec<Vec<(Vector3<f64>, f64)>> {
-        let turn = unit((b - self.b) / self.lambda_sum);
-        let place = |p: &Vector| {
+    /// Returns the set at a b, rad, as vectors in axes of the base, along two directions.
+    fn along(&self, b: f64, directions: [&Vector3<f64>; 2]) -> Lines {
+        let turn = unit(b / self.lambda_sum);
+        let [re, im] = directions.map(|way| Vector::new(way.dot(&self.axes.column(0)), way.dot(&self.axes.column(1))));
+        self.set.mapped(|p| {
             let p = turn * p;
-            self.axes * Vector3::new(p.re, p.im, self.height)
-        };
-        let facing = |way: Vector3<f64>| if self.bounds { way.cross(&self.axes.column(2)).dot(along) } else { 0.0 };
-        let line = |line: &Vec<Vector>| {
-            let places: Vec<Vector3<f64>> = line.iter().map(place).collect();
-            let way = |i: usize| places[(i + 1).min(places.len() - 1)] - places[i.saturating_sub(1)];
-            (0..places.len()).map(|i| (places[i], facing(way(i)))).collect()
-        };
-        self.lines.iter().map(line).collect()
+            Vector::new(p.re * re.re + p.im * re.im, p.re * im.re + p.im * im.im)
+        })
     }
-}
 
-/// Returns points at even distances along a line.
-fn evenly(line: &[[f64; 2]], count: usize) -> Vec<Vector> {
-    let points: Vec<Vector> = line.iter().map(|[x, y]| Vector::new(*x, *y)).collect();
-    let mut way = vec![0.0];
-    way.extend(points.windows(2).scan(0.0, |sum, pair| {
-        *sum += (pair[1] - pair[0]).norm();
-        Some(*sum)
-    }));
-    let whole = way[way.len() - 1];
-    let at = |i: usize| {
-        let wanted = whole * i as f64 / count as f64;
-        let k = way.partition_point(|x| *x < wanted).clamp(1, points.len() - 1);
-        let run = way[k] - way[k - 1];
-        let share = if run > 0.0 { ((wanted - way[k - 1]) / run).clamp(0.0, 1.0) } else { 0.0 };
-        points[k - 1] + share * (points[k] - points[k - 1])
-    };
-    (0..=count).map(at).collect()
+    fn normal(&self) -> Vector3<f64> {
+        self.axes.column(2).into_owned()
+    }
+
+    fn size(&self) -> f64 {
+        self.set.extent().map_or(0.0, |[s, v]| (s[1] - s[0]).hypot(v[1] - v[0]))
+    }
 }
 
 /// The reach of the last platform.
 #[derive(Clone, Debug)]
 pub struct PlatformReach {
-    carrier: BlockReach,
-    last: BlockReach,
+    /// Places of the carrier and the last block in the assembly.
+    blocks: [usize; 2],
+    reaches: [BlockReach; 2],
     /// Place of the last block from the end effector of its carrier, m, in axes of the base.
     between: Vector3<f64>,
+    /// b of both blocks for which the surface was made, rad.
+    made_for: Option<[f64; 2]>,
+    lines: Strips,
 }
 
 impl PlatformReach {
-    /// Returns the reach of a block that carries no other; `None` if no block carries another, or one of
-    /// the two has no b.
-    pub fn of(run: &Run, shared: &SharedRun) -> Option<Self> {
-        let assembly = &shared.block().scenario.assembly;
-        let carried = |i: &&usize| assembly.blocks()[**i].mount.on.is_some();
-        let last = *assembly.order().iter().rev().find(carried)?;
-        let carrier = assembly.blocks()[last].mount.on?;
-        let led = shared.block().block;
+    /// Returns the reach of a platform of an assembly, without its surface; `None` if no block carries another, or the
+    /// workspace of one of the two is not known or is a point. `stage` returns that of a block.
+    pub fn of<'a>(assembly: &Assembly, stage: impl Fn(usize) -> Option<&'a Stage>) -> Option<Self> {
+        let chain = assembly.longest_chain();
+        let [.., carrier, last] = chain[..] else { return None };
         let reach = |i: usize| {
-            let own =
-                if i == led { Some(run) } else { shared.others().find(|(other, _)| *other == i).map(|(_, run)| run) };
-            let block = &assembly.blocks()[i];
-            BlockReach::of(i, own?, block.mount.axes, block.platform_height())
+            let (workspace, block) = (stage(i)?.outlined()?, &assembly.blocks()[i]);
+            let space = workspace.space();
+            let (axes, height) = (block.mount.axes, block.platform_height());
+            Some(BlockReach { set: workspace.lines(), lambda_sum: space.lambda_sum(), axes, height })
         };
         let between = assembly.blocks()[last].mount.at;
-        Some(Self { carrier: reach(carrier)?, last: reach(last)?, between })
+        Some(Self::new([carrier, last], [reach(carrier)?, reach(last)?], between))
     }
 
-    /// Returns the carrier, from whose mount the lines are.
+    /// Returns the reach of two blocks, with the place of the last one from the end effector of its carrier, m.
+    pub fn new(blocks: [usize; 2], reaches: [BlockReach; 2], between: Vector3<f64>) -> Self {
+        let mut own = Self { blocks, reaches, between, made_for: None, lines: Strips::default() };
+        let chord = 0.25 * own.chord();
+        own.reaches.iter_mut().for_each(|reach| reach.set = reach.set.simplified(chord));
+        own
+    }
+
+    /// Largest deviation of the surface, m.
+    pub fn chord(&self) -> f64 {
+        CHORD * self.reaches.iter().map(BlockReach::size).sum::<f64>()
+    }
+
+    /// Returns the carrier, from whose mount the surface is.
     pub fn carrier(&self) -> usize {
-        self.carrier.block
+        self.blocks[0]
     }
 
-    /// Adds the lines; `frame` returns that of a block, and `place` takes a point in axes of the base, from the mount of
-    /// the carrier, to the world.
-    pub fn draw<'a>(
-        &self,
-        scene: &mut Scene,
-        palette: &Palette,
-        frame: impl Fn(usize) -> Option<&'a Frame>,
-        place: impl Fn(&Vector3<f64>) -> [f32; 3],
-    ) {
-        let (Some(below), Some(above)) = (frame(self.carrier.block), frame(self.last.block)) else { return };
-        let crossing = self.carrier.axes.column(2).cross(&self.last.axes.column(2));
-        let (first, second) =
-            (self.carrier.at(below.b_reference, &crossing), self.last.at(above.b_reference, &crossing));
-        let mut strips: Vec<Vec<[f32; 3]>> = Vec::new();
-        // Each boundary at points of the other one.
-        for ((along, across), count) in [((&first, &second), LINES[0]), ((&second, &first), LINES[1])] {
-            for other in across {
-                let step = (other.len() - 1).div_ceil(count).max(1);
-                for (p, facing) in other.iter().step_by(step) {
-                    for line in along {
-                        let parts = line.split(|(_, own)| own * facing < 0.0).filter(|part| part.len() > 1);
-                        strips.extend(
-                            parts.map(|part| {
-                                part.iter().map(|(q, _)| place(&(self.between + p + q))).collect::<Vec<_>>()
-                            }),
-                        );
-                    }
-                }
-            }
+    /// Returns the surface for the b of its blocks, rad, if it is another than the last one; `b` returns that of a
+    /// block.
+    pub fn remade(&mut self, b: impl Fn(usize) -> Option<f64>) -> Option<Mesh> {
+        let [below, above] = self.blocks;
+        let now = [b(below)?, b(above)?];
+        let is_near = |made: [f64; 2]| (0..2).all(|i| (made[i] - now[i]).abs() <= SAME_B_RAD);
+        if self.made_for.is_some_and(is_near) {
+            return None;
         }
-        let strips: Strips = strips.into();
-        scene.lines.push(Polyline::new("reach", strips, WIDTH_PX, faded(palette.amber, OPACITY)));
+        self.made_for = Some(now);
+        let (mesh, lines) = self.at(now);
+        self.lines = lines.into();
+        Some(mesh)
+    }
+
+    /// Returns surface and lines at the b of the carrier and the last block, rad, in axes of the base, from the mount
+    /// of the carrier, m.
+    pub fn at(&self, b: [f64; 2]) -> (Mesh, Vec<Vec<[f32; 3]>>) {
+        let [below, above] = &self.reaches;
+        let normals = [below.normal(), above.normal()];
+        let crossing = normals[0].cross(&normals[1]);
+        let origin = self.between + below.height * normals[0] + above.height * normals[1];
+        let sine = crossing.norm();
+        if sine < LEAST_ANGLE {
+            return self.flat(0, b, origin);
+        }
+        let u = crossing / sine;
+        let [v, w] = normals.map(|normal| normal.cross(&u));
+        let sets = [below.along(b[0], [&u, &v]), above.along(b[1], [&u, &w])];
+        let thin =
+            |set: &Lines| set.extent().is_none_or(|[_, [from, to]]| to - from <= LEAST_WIDTH * self.chord() / CHORD);
+        match (thin(&sets[0]), thin(&sets[1])) {
+            // A set along u is in the plane of the other one, too.
+            (_, true) => return self.flat(0, b, origin),
+            (true, false) => return self.flat(1, b, origin),
+            (false, false) => {}
+        }
+        let [first, second] = sets.map(|set| Slices::of(&set, self.chord()));
+        Surface::of(&first, &second, Axes { directions: [u, v, w], origin })
+    }
+
+    /// Returns a flat sum, in the plane of one of both blocks.
+    fn flat(&self, plane: usize, b: [f64; 2], origin: Vector3<f64>) -> (Mesh, Vec<Vec<[f32; 3]>>) {
+        let (own, turn) = (&self.reaches[plane], unit(FLAT_LINES_RAD));
+        let [x, y, normal] = array::from_fn(|i| own.axes.column(i).into_owned());
+        let (u, v) = (x * turn.re + y * turn.im, y * turn.re - x * turn.im);
+        let other = self.reaches[1 - plane].along(b[1 - plane], [&normal, &normal]);
+        let off = other.lines.iter().flatten().next().map_or(0.0, |p| p.re);
+        let origin = origin + off * normal;
+        let [first, second] = array::from_fn(|i| Slices::of(&self.reaches[i].along(b[i], [&u, &v]), self.chord()));
+        let pieces = FlatSum(&first, &second).pieces(self.chord());
+        let place = |[s, level]: [f64; 2]| origin + s * u + level * v;
+        let mut mesh = Mesh { shell: true, ..Mesh::default() };
+        for piece in &pieces {
+            let ([low, high], [from, to]) = (piece.ends, piece.range);
+            let at = mesh.positions.len() as u32;
+            let corners = [[low[0], from], [high[0], from], [high[1], to], [low[1], to]];
+            mesh.positions.extend(corners.map(|p| <[f32; 3]>::from(place(p).map(|x| x as f32))));
+            mesh.normals.extend([<[f32; 3]>::from(normal.map(|x| x as f32)); 4]);
+            mesh.triangles.extend([[at, at + 1, at + 2], [at, at + 2, at + 3]]);
+        }
+        let mut lines = Traced::new(0.01 * self.chord());
+        outline(&pieces, 0.5 * self.chord()).iter().for_each(|edge| lines.add(place(edge[0]), place(edge[1])));
+        (mesh, lines.strips())
+    }
+
+    /// Adds the surface, a mesh of the scene, and its lines in a pose.
+    pub fn draw(&self, scene: &mut Scene, palette: &Palette, mesh: usize, pose: Transform) {
+        scene.solids.push(Solid {
+            name: "reach".into(),
+            mesh,
+            world_from_item: pose,
+            colour: faded(palette.amber, OPACITY),
+            changes: ItemChanges::Pose,
+        });
+        let colour = faded(palette.amber, LINE_OPACITY);
+        scene.lines.push(Polyline::new("reach/lines", self.lines.clone(), LINE_WIDTH_PX, colour).moving(pose));
     }
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
 
 use crate::pose_space::PoseSpace;
+use stillbase_mechanics::assembly::Block;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 
 /// A block of a chain.
@@ -13,16 +14,19 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive, Vector, unit};
 pub struct ChainBlock {
     space: Arc<PoseSpace>,
     b: f64,
+    /// Its mount from what carries it, with the height of its platform, m, in axes of the base.
     offset: Vector3<f64>,
+    /// Directions x and y of its plane.
     axes: [Vector3<f64>; 2],
     /// Rates of all drives for a rate of 1 of each relative angle, b held.
     lifts: Vec<PerDrive>,
 }
 
 impl ChainBlock {
-    /// Returns a block at `b`, rad, whose mount is at `offset`, m, from what carries it, with the height of its platform.
-    /// `axes` are the directions x and y of its plane.
-    pub fn new(space: Arc<PoseSpace>, b: f64, offset: Vector3<f64>, axes: [Vector3<f64>; 2]) -> Self {
+    /// Returns a block of an assembly at `b`, rad.
+    pub fn of(block: &Block, space: Arc<PoseSpace>, b: f64) -> Self {
+        let axis = |column: usize| block.mount.axes.column(column).into_owned();
+        let (offset, axes) = (block.mount.at + axis(2) * block.platform_height(), [axis(0), axis(1)]);
         let count = space.joints().len();
         let one = |of: usize| PerDrive::from_fn(count, |i| f64::from(u8::from(i == of)));
         let lifts = (0..count).map(|of| space.lift_rates(&one(of), 0.0)).collect();

@@ -6,7 +6,7 @@ use super::base::MovingSupport;
 use stillbase_mechanics::assembly::{Assembly, Attitude, BlockLoads, BlockState, MAX_BLOCKS, SpatialLoads};
 use stillbase_mechanics::planar::PerDrive;
 use stillbase_settings::number::fixed_or_finer;
-use stillbase_simulation::frame::{REACTIONLESS_SHARE, SharedBase};
+use stillbase_simulation::frame::{SharedBase, silent};
 
 /// The state at one instant.
 #[derive(Clone, Debug)]
@@ -112,7 +112,7 @@ impl AssemblyVerdict {
 
     /// Returns whether each of the six components is silent.
     pub fn silent(&self) -> [bool; 6] {
-        std::array::from_fn(|i| self.peaks[i] <= REACTIONLESS_SHARE * self.scale[usize::from(i < 3)])
+        silent(&self.peaks, &self.scale)
     }
 
     pub(super) fn see(&mut self, assembly: &Assembly, frame: &AssemblyFrame) {

@@ -256,22 +256,16 @@ impl SharedRun {
     /// Does the same as [`targets_in_space`](Self::targets_in_space) for a place in axes of the base, m.
     pub fn targets_on_base(&self, run: &Run, to: &Vector3<f64>) -> Option<BTreeMap<String, [f64; 2]>> {
         let assembly = &self.block.scenario.assembly;
-        let mut chain = vec![self.block.block];
-        while let Some(on) = assembly.blocks()[chain[chain.len() - 1]].mount.on {
-            chain.push(on);
-        }
+        let chain = assembly.chain(self.block.block);
         if chain.len() < 2 {
             return None;
         }
-        chain.reverse();
         let (mut parts, mut angles) = (Vec::new(), Vec::new());
         for i in &chain {
             let run = if *i == self.block.block { run } else { &self.others.get(*i)?.as_ref()?.run };
-            let (space, mount) = (run.pose_space().ok()?, &assembly.blocks()[*i].mount);
+            let space = run.pose_space().ok()?;
             let (a, b) = space.project(&run.simulation().reference().q);
-            let axis = |column: usize| mount.axes.column(column).into_owned();
-            let offset = mount.at + axis(2) * assembly.blocks()[*i].platform_height();
-            parts.push(ChainBlock::new(space.clone(), b, offset, [axis(0), axis(1)]));
+            parts.push(ChainBlock::of(&assembly.blocks()[*i], space.clone(), b));
             angles.extend(a.iter().copied());
         }
         let chain_of = PlatformChain::new(parts);

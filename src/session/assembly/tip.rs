@@ -133,11 +133,7 @@ impl TipChain {
     /// # Errors
     /// If a block has no b.
     pub fn of(assembly: &Assembly, block: usize, b: &BTreeMap<String, f64>) -> Result<Self, TipError> {
-        let mut blocks = vec![block];
-        while let Some(on) = assembly.blocks()[blocks[blocks.len() - 1]].mount.on {
-            blocks.push(on);
-        }
-        blocks.reverse();
+        let blocks = assembly.chain(block);
         if let Some(other) = b.keys().find(|name| !blocks.iter().any(|i| assembly.blocks()[*i].name == **name)) {
             let names: Vec<&str> = blocks.iter().map(|i| assembly.blocks()[*i].name.as_str()).collect();
             return wrong("b", format!("no block {other:?} moves this end effector: want {}", names.join(" or ")));
@@ -163,9 +159,7 @@ impl TipChain {
             };
             let near_own = pose.map_or_else(|| space.middle(), |pose| space.angles(&pose));
             near.extend(near_own.iter().copied());
-            let axis = |column: usize| own.mount.axes.column(column).into_owned();
-            let offset = own.mount.at + axis(2) * own.platform_height();
-            parts.push(ChainBlock::new(Arc::new(space), b, offset, [axis(0), axis(1)]));
+            parts.push(ChainBlock::of(own, Arc::new(space), b));
         }
         Ok(Self { blocks, chain: PlatformChain::new(parts), near: DVector::from_vec(near) })
     }
@@ -227,19 +221,7 @@ impl TipPath {
                 Some(found) => Ok(found),
                 None => wrong("block", format!("no block {name:?}: want one of {}", names())),
             },
-            None => {
-                let depth = |i: usize| {
-                    let mut at = assembly.blocks()[i].mount.on;
-                    let mut depth = 0;
-                    while let Some(on) = at {
-                        (at, depth) = (assembly.blocks()[on].mount.on, depth + 1);
-                    }
-                    depth
-                };
-                let ends = (0..assembly.blocks().len()).filter(|i| assembly.carried_by(Some(*i)).next().is_none());
-                // The first of the longest chains.
-                ends.max_by_key(|i| (depth(*i), std::cmp::Reverse(*i))).map_or_else(|| wrong("block", "no block"), Ok)
-            }
+            None => assembly.longest_chain().last().copied().map_or_else(|| wrong("block", "no block"), Ok),
         }
     }
 

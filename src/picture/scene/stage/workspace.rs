@@ -8,6 +8,7 @@ use crate::scene::exaggeration::DrawnFrame;
 use crate::scene::linkage::LinkageModel;
 use crate::scene::options::{Handle, ViewOptions};
 use crate::scene::palette::{Palette, faded};
+use crate::scene::platform_reach::slices::Lines;
 use crate::scene::{
     Anchor, Area, IN_PLACE, ItemChanges, Label, Marker, Measure, Mesh, Name, Polyline, Rgba, Scene, Shade, Solid,
     Strips, dexterity, fill, point, posed,
@@ -221,6 +222,17 @@ impl Workspace {
     /// Boundary at b = 0 as closed lines, m; a curve is traversed forwards and backwards.
     pub fn shape(&self) -> &[Vec<Vector>] {
         &self.shape
+    }
+
+    /// Returns what it is at b = 0: the boundary of a region, or a curve, m.
+    pub fn lines(&self) -> Lines {
+        let bounds = self.sheets().is_some() || self.fill().is_some();
+        let line = |line: &Vec<Vector>| match bounds {
+            true => line.iter().chain(line.first()).copied().collect(),
+            // A curve is traversed forwards and backwards.
+            false => line[..line.len().div_ceil(2)].to_vec(),
+        };
+        Lines { lines: self.shape.iter().map(line).collect(), bounds }
     }
 
     /// Returns the triangles that fill it at b = 0; `None` for sheets and curves.
