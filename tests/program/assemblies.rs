@@ -115,7 +115,7 @@ fn blocks_follow_tasks_of_their_own() {
         (&["spectrum", "wrist-across"], "render and export-model take this one"),
         (&["headless", "case-1", "wrist-across", "-o", "x.rrd"], "recorded by itself"),
         (&["simulate", "wrist-across", "--signals", "nothing"], "no signal \"nothing\""),
-        (&["simulate", "wrist-across", "--set", "task.elbow.b=1"], "no block \"elbow\""),
+        (&["simulate", "wrist-across", "--set", "task.elbow.b=1"], "has no key \"elbow\": want one of carrier, wrist"),
         (&["simulate", "wrist-across", "--set", "step=0"], "want 0.00001 to 0.01 s"),
         (&["machines", "two-arms", "-o", "x.toml"], "is an assembly"),
     ] {
@@ -214,7 +214,7 @@ fn assemblies_are_simulated_alone_and_with_settings() {
         (["--set", "bse.mass=2"], "want base.mass (nearest)"),
         (["--set", "base.stifness=2"], "want stiffness (nearest)"),
         (["--set", "base.stiffness=1,1,1,1,1,1"], "base.stiffness has no use here: want base.kind = compliant"),
-        (["--set", "task.left.moment_limit=1e-99"], "moment_limit of block left"),
+        (["--set", "task.left.moment_limit=1e-99"], "(task.left.moment_limit) is 1e-99: want 1e-9 to 1e9 N m"),
     ] {
         refuses(&[&["simulate", "arm-against-arm"], &words[..]].concat(), said);
     }
