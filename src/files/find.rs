@@ -207,24 +207,9 @@ pub(crate) fn assembly_scenario_of<E: From<ScenarioError>>(
     let changed = changed_keys(table, change).to_string();
     let read = AssemblyScenario::parse(&changed, &label, assembly.clone()).map_err(|why| {
         let is_sound = AssemblyScenario::parse(text, &label, assembly).is_ok();
-        without_lines(why, if is_sound { "--set" } else { &label })
+        why.without_lines(if is_sound { "--set" } else { &label })
     });
     Ok(Some(read?))
-}
-
-/// Returns the error of a text that is not that of a file, whose lines and examples say nothing; `label` names what is wrong.
-fn without_lines(why: ScenarioError, label: &str) -> ScenarioError {
-    let file = label.to_owned();
-    match why {
-        ScenarioError::Faulty { first, mut faults, .. } => {
-            for fault in &mut faults.list {
-                (fault.line, fault.column, fault.example) = (None, None, String::new());
-            }
-            ScenarioError::Faulty { file, first: Box::new(without_lines(*first, label)), faults }
-        }
-        ScenarioError::Syntax { message, .. } => ScenarioError::Syntax { file, line: None, message },
-        other => other,
-    }
 }
 
 /// Returns a scenario as [`scenario`] does. Of an assembly, returns that of the block which its file leads; for the name or

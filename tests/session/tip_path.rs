@@ -256,7 +256,10 @@ fn proposals_work_as_printed() {
             "to = [0.45, 0.55, 0.1]\nb = { leg = 1.0 }\n",
             "table of b on the path has no key \"leg\": want one of carrier, arm",
         ),
-        ("to = [0.45, 0.55, 0.1]\n[task.arm]\nkind = \"reactionless\"\n", "[tip] leads block arm"),
+        (
+            "to = [0.45, 0.55, 0.1]\n[task.arm]\nkind = \"reactionless\"\n",
+            "task of block arm (task.arm) is that of a block which [tip] leads",
+        ),
     ] {
         let why = refused(text);
         assert!(why.contains(words), "{text}{why}");

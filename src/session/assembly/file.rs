@@ -222,8 +222,8 @@ impl Reading<'_> {
             let stated = file.task.contains_key(&block.name);
             if chain.contains(&i) {
                 if stated {
-                    let said = format!("[tip] leads block {}: want no task of its own, or no [tip]", block.name);
-                    return first(&["task", &block.name], Wrong::Refused(said));
+                    let said = "is that of a block which [tip] leads: want no task of its own, or no [tip]";
+                    return first(&["task", &block.name], Wrong::Refused(said.into()));
                 }
                 continue;
             }
@@ -582,6 +582,7 @@ impl AssemblyScenario {
             return Ok(self);
         }
         let stated: Table = self.to_toml().parse().unwrap_or_default();
-        Self::parse(&changed_keys(stated, change).to_string(), label, self.assembly)
+        let changed = changed_keys(stated, change).to_string();
+        Self::parse(&changed, label, self.assembly).map_err(|why| why.without_lines(label))
     }
 }
