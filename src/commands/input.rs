@@ -27,9 +27,12 @@ use stillbase_settings::change;
 use stillbase_settings::key::Key;
 use stillbase_settings::number::counted;
 use stillbase_settings::range::{Range, shortened};
+use stillbase_settings::spelling::nearest_keys;
 use stillbase_settings::text::{MAX_TEXT_BYTES, shell_word};
 use stillbase_settings::word::Choice;
 use stillbase_simulation::plant::BaseKind;
+
+use toml::Value;
 
 use super::exit::print_message;
 use super::failure::Failure;
@@ -95,23 +98,37 @@ impl Settings {
         }
     }
 
-    /// Returns an assembly with settings of its blocks changed, as `wrist.payload.mass`, or its `gravity`.
+    /// Returns an assembly with settings of its blocks changed, as `wrist.payload.mass`, or its `gravity`. `beside` are first
+    /// words of other keys, one of which may be meant.
     ///
     /// # Errors
     /// If a setting is wrong, or names no block.
-    fn apply_to_assembly(&self, mut assembly: Assembly) -> Result<Assembly, Failure> {
+    fn apply_to_assembly(&self, mut assembly: Assembly, beside: &[&str]) -> Result<Assembly, Failure> {
         let block_of = |key: &str| key.split_once('.').map_or("", |(block, _)| block).to_owned();
         let names: Vec<String> = assembly.blocks().iter().map(|block| block.name.clone()).collect();
         for (key, value) in &self.pairs {
             let wrong = |why: String| Failure::wrong_input(format!("--set {key}: {why}"));
             if key == "gravity" {
-                let three: Vec<f64> = value.split(',').filter_map(|x| x.trim().parse().ok()).collect();
-                let three: Option<[f64; 3]> = three.try_into().ok().filter(|_| value.split(',').count() == 3);
                 let want = || wrong(format!("{}: want x,y,z of the assembly in m/s²", shortened(value, 80)));
+                let three = match change::value(value) {
+                    Value::String(word) if word == change::DEFAULT_WORD => Some([0.0; 3]),
+                    Value::Array(list) => {
+                        let numbers: Option<Vec<f64>> = list.iter().map(change::number).collect();
+                        numbers.and_then(|numbers| numbers.try_into().ok())
+                    }
+                    _ => None,
+                };
                 assembly.set_gravity(three.ok_or_else(want)?).map_err(|why| wrong(why.to_string()))?;
             } else if !names.contains(&block_of(key)) {
                 let (first, all) = (names.first().map_or("BLOCK", String::as_str), names.join(", "));
-                return Err(wrong(format!("want the name of a block before it, one of {all}, as {first}.{key}")));
+                let (head, rest) =
+                    key.split_once('.').map_or((&key[..], String::new()), |(head, rest)| (head, format!(".{rest}")));
+                let known = beside.iter().copied().chain(names.iter().map(String::as_str));
+                let nearest = nearest_keys(head, known).into_iter().map(|one| format!("{one}{rest} (nearest) or "));
+                let nearest: String = nearest.collect();
+                return Err(wrong(format!(
+                    "want {nearest}the name of a block before it, one of {all}, as {first}.{key}"
+                )));
             } else if key.ends_with(".gravity") {
                 return Err(wrong("want gravity=x,y,z of the whole assembly".into()));
             }
@@ -224,7 +241,7 @@ impl MachineArgument {
     /// If the file or a setting is wrong, or a setting names no block.
     pub fn assembly_file(&self) -> Result<Option<Assembly>, Failure> {
         let Some(assembly) = stillbase_files::assembly(&self.name)? else { return Ok(None) };
-        self.settings.apply_to_assembly(assembly).map(Some)
+        self.settings.apply_to_assembly(assembly, &[]).map(Some)
     }
 
     /// Returns the scenario of an assembly that the argument names, with its settings changed; `None` for anything else.
@@ -307,16 +324,23 @@ fn found_machine(name: &str) -> Result<FoundMachine, Failure> {
 /// If the file, its assembly or a setting is wrong.
 pub fn assembly_scenario(name: &str, settings: &Settings) -> Result<Option<AssemblyScenario>, Failure> {
     const OF_FILE: [&str; 8] = ["task", "base", "step", "duration", "lead", "scenario", "against", "tip"];
+    let checked = |found: AssemblyScenario, of_file: &Settings| {
+        refuse_without_effect(of_file, &|path| found.condition_for_effect(path))?;
+        for (path, want) in found.ineffective_keys() {
+            print_message(format!("note: {}: {path} has no use there: want {want}", found.name));
+        }
+        Ok(Some(found))
+    };
     let is_of_file = |key: &str| OF_FILE.contains(&key.split('.').next().unwrap_or(key));
     let [of_file, of_blocks] = [true, false].map(|wanted| settings.of_keys(|key| is_of_file(key) == wanted));
-    let apply = |assembly| of_blocks.apply_to_assembly(assembly);
+    let apply = |assembly| of_blocks.apply_to_assembly(assembly, &OF_FILE);
     if let Some(found) = stillbase_files::assembly_scenario(name, &of_file.change(), apply)? {
-        return Ok(Some(found));
+        return checked(found, &of_file);
     }
     let Some(assembly) = stillbase_files::assembly(name)? else { return Ok(None) };
     let made = AssemblyScenario::for_assembly(apply(assembly)?)?;
     print_message(format!("note: {name}: a motion was made for each block of the assembly"));
-    Ok(Some(made.with_changes(&of_file.change(), name)?))
+    checked(made.with_changes(&of_file.change(), "--set")?, &of_file)
 }
 
 /// Returns a scenario by name or file, with settings changed, whose base floats.
@@ -506,9 +530,14 @@ pub fn overlay_settings(scenario: Scenario, settings: &Settings) -> Result<Scena
 /// # Errors
 /// If there is such a setting; the error names the condition for an effect.
 pub fn refuse_ineffective(scenario: &Scenario, settings: &Settings) -> Result<(), Failure> {
+    refuse_without_effect(settings, &|path| scenario.condition_for_effect(path))
+}
+
+/// Refuses settings that have no effect; `condition` returns the condition for an effect of a key that has none.
+fn refuse_without_effect(settings: &Settings, condition: &dyn Fn(&str) -> Option<&'static str>) -> Result<(), Failure> {
     for (path, value) in change::leaves(&settings.change()) {
         let freed = value.as_str().is_some_and(|word| [change::DEFAULT_WORD, Key::NONE].contains(&word));
-        if let Some(want) = scenario.condition_for_effect(&path).filter(|_| !freed) {
+        if let Some(want) = condition(&path).filter(|_| !freed) {
             return Err(no_use(&path, want).with_context("--set"));
         }
     }

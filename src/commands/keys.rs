@@ -3,6 +3,7 @@
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
+use stillbase_session::assembly::ASSEMBLY_KEYS;
 use stillbase_session::scenario::KEYS;
 use stillbase_settings::key::Key;
 
@@ -13,7 +14,7 @@ use super::lookup::{DictionaryRow, Lookup, Page, cell};
 ///
 /// Each key is the same in a scenario's file, after `--set`, in an edit and in the window. `*` is a placeholder for the
 /// name of a link, a length, a drive or a relative angle of the machine. The keys of the design may also stand in a
-/// machine file, as the table `[design]`.
+/// machine file, as the table `[design]`. Keys of assemblies are those of a scenario of several machines on one base.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -32,6 +33,9 @@ pub struct Answer {
 #[derive(JsonSchema, Serialize)]
 struct Row {
     key: &'static str,
+    /// Kind of scenario that has the key; `None` for one of a machine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of: Option<&'static str>,
     holds: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     unit: Option<&'static str>,
@@ -52,10 +56,11 @@ struct Row {
 }
 
 impl Row {
-    fn of(part: &'static str, key: &'static Key) -> Self {
+    fn of(of: Option<&'static str>, part: &'static str, key: &'static Key) -> Self {
         let some = |text: &'static str| (!text.is_empty()).then_some(text);
         Self {
             key: key.path,
+            of,
             holds: key.value_type.to_string(),
             unit: some(key.unit()),
             default: some(key.default),
@@ -96,14 +101,22 @@ impl DictionaryRow for Row {
 impl KeysArguments {
     /// Prints the settings.
     pub fn run(&self) -> Result<(), Failure> {
-        let keys =
-            KEYS.iter().flat_map(|(part, tables)| tables.iter().copied().flatten().map(|key| Row::of(part, key)));
+        let rows = |of: Option<&'static str>, all: &'static [(&'static str, &'static [&'static [Key]])]| {
+            let of_part = move |(part, tables): &'static (&'static str, &'static [&'static [Key]])| {
+                tables.iter().copied().flatten().map(move |key| Row::of(of, part, key))
+            };
+            all.iter().flat_map(of_part)
+        };
+        let keys = rows(None, &KEYS).chain(rows(Some("assembly"), &ASSEMBLY_KEYS));
         let keys = self.lookup.found(keys, ("key", "keys"))?;
         let text = "# Every setting\n\nEach key is the same in a scenario's file, after `--set` on the command line, in an edit of a \
          saved session, and in the window under *All settings*. In a key, `*` stands for a name: of a link, a named length, \
          a drive or a relative angle of the machine. The word `default` removes a key, so that its default applies \
          again; `none` does the same where it is the default. A number out of range is refused with its range, and a key without effect is reported. \
-         The keys of the design may also stand in a machine file, as the table `[design]`.\n\n\
+         The keys of the design may also stand in a machine file, as the table `[design]`. \
+         Keys of an assembly are those of a scenario of several machines on one base: in it, `task.BLOCK.KEY` is `task.KEY` of the \
+         block's machine, `scenario.BLOCK.KEY` any of its keys of control and the like, and `BLOCK.KEY` after `--set` a key of the \
+         machine itself.\n\n\
          `stillbase keys WORD` prints these on the command line. This page is what `stillbase keys --markdown` writes.\n";
         let page = Page { text: text.into(), heads: &["key", "default", "holds", "meaning"] };
         self.lookup.print(&Answer { keys }, |answer| &answer.keys, &page)

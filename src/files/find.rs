@@ -23,10 +23,11 @@ use stillbase_settings::spelling::UnknownName;
 use stillbase_simulation::plant::{Base, BaseKind};
 
 const IS_ASSEMBLY: &str = "this is an assembly of several machines: want one machine; the window, check, design --counterweights, \
-                           dynamics, simulate, headless, render and export-model take an assembly, too";
+                           dynamics, simulate, headless, replay, diff, table, render and export-model take an assembly, \
+                           too";
 
 const IS_OF_ASSEMBLY: &str = "this is a scenario of an assembly of several machines: want one of a machine; the window, \
-                              simulate, headless, diff, render and export-model take this one, too";
+                              simulate, headless, replay, diff, table, render and export-model take this one, too";
 
 const IS_SCENARIO: &str = "this is a scenario, not a machine: want the machine that it names; simulate, headless, \
                            compare, joints, export, tolerance, spectrum and plan take a SCENARIO";
@@ -199,22 +200,16 @@ pub(crate) fn assembly_scenario_of<E: From<ScenarioError>>(
     };
     let Some(found) = found.map_err(ScenarioError::from)? else { return Ok(None) };
     let assembly = apply(found)?;
-    // With settings, lines are no longer those of the file.
-    let changed = if change.is_empty() { None } else { Some(changed_keys(table, change).to_string()) };
-    let read = AssemblyScenario::parse(changed.as_deref().unwrap_or(text), &shortened(label(name), 300), assembly);
-    Ok(Some(read.map_err(|why| if changed.is_some() { without_lines(why) } else { why })?))
-}
-
-/// Returns the error of a text that is not that of a file, whose lines say nothing.
-fn without_lines(why: ScenarioError) -> ScenarioError {
-    match why {
-        ScenarioError::Faulty { file, first, mut faults } => {
-            faults.list.iter_mut().for_each(|fault| (fault.line, fault.column) = (None, None));
-            ScenarioError::Faulty { file, first: Box::new(without_lines(*first)), faults }
-        }
-        ScenarioError::Syntax { file, message, .. } => ScenarioError::Syntax { file, line: None, message },
-        other => other,
+    let label = shortened(label(name), 300);
+    if change.is_empty() {
+        return Ok(Some(AssemblyScenario::parse(text, &label, assembly)?));
     }
+    let changed = changed_keys(table, change).to_string();
+    let read = AssemblyScenario::parse(&changed, &label, assembly.clone()).map_err(|why| {
+        let is_sound = AssemblyScenario::parse(text, &label, assembly).is_ok();
+        why.without_lines(if is_sound { "--set" } else { &label })
+    });
+    Ok(Some(read?))
 }
 
 /// Returns a scenario as [`scenario`] does. Of an assembly, returns that of the block which its file leads; for the name or

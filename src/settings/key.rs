@@ -53,8 +53,12 @@ pub enum KeyType {
     PerDrive(Range),
     /// This many numbers, separated by commas.
     List(usize, Range),
-    /// Points x, y.
-    Points(Range),
+    /// One of two numbers of numbers.
+    EitherList([usize; 2], Range),
+    /// Points, each of this many coordinates.
+    Points(usize, Range),
+    /// This many names.
+    Names(usize),
     /// One of these words.
     Choice(&'static [&'static str]),
     /// `true` or `false`.
@@ -140,9 +144,10 @@ impl Key {
             | KeyType::Whole(range)
             | KeyType::PerDrive(range)
             | KeyType::List(_, range)
+            | KeyType::EitherList(_, range)
             | KeyType::Bounds(range)
-            | KeyType::Points(range) => Some(range),
-            KeyType::Choice(_) | KeyType::Switch | KeyType::Spread(_) | KeyType::Rows => None,
+            | KeyType::Points(_, range) => Some(range),
+            KeyType::Names(_) | KeyType::Choice(_) | KeyType::Switch | KeyType::Spread(_) | KeyType::Rows => None,
         }
     }
 
@@ -180,9 +185,10 @@ impl KeyType {
             Self::Whole(_) => Self::Whole(range),
             Self::PerDrive(_) => Self::PerDrive(range),
             Self::List(count, _) => Self::List(count, range),
-            Self::Points(_) => Self::Points(range),
+            Self::EitherList(counts, _) => Self::EitherList(counts, range),
+            Self::Points(count, _) => Self::Points(count, range),
             Self::Bounds(_) => Self::Bounds(range),
-            Self::Choice(_) | Self::Switch | Self::Spread(_) | Self::Rows => self,
+            Self::Names(_) | Self::Choice(_) | Self::Switch | Self::Spread(_) | Self::Rows => self,
         }
     }
 
@@ -203,7 +209,14 @@ impl KeyType {
             }
             Self::PerDrive(_) => number(value) || list(value, None),
             Self::List(count, _) => list(value, Some(*count)),
-            Self::Points(_) => value.as_array().is_some_and(|points| points.iter().all(|p| list(p, Some(2)))),
+            Self::EitherList(counts, _) => counts.iter().any(|count| list(value, Some(*count))),
+            Self::Points(count, _) => {
+                value.as_array().is_some_and(|points| points.iter().all(|p| list(p, Some(*count))))
+            }
+            Self::Names(1) => value.is_str(),
+            Self::Names(count) => {
+                value.as_array().is_some_and(|names| names.len() == *count && names.iter().all(Value::is_str))
+            }
             Self::Choice(words) => value.as_str().is_some_and(|word| words.contains(&word)),
             Self::Switch => value.is_bool(),
             Self::Bounds(_) => value.as_str().is_some_and(|word| HOLD_WORDS.contains(&word)) || list(value, Some(2)),
@@ -220,7 +233,11 @@ impl fmt::Display for KeyType {
             Self::Whole(range) => write!(f, "a whole number, {range}"),
             Self::PerDrive(range) => write!(f, "{range}, for all drives or a list with one for each"),
             Self::List(count, range) => write!(f, "{count} numbers, each {range}"),
-            Self::Points(range) => write!(f, "points [[x, y], …], each {range}"),
+            Self::EitherList([one, other], range) => write!(f, "{one} or {other} numbers, each {range}"),
+            Self::Points(2, range) => write!(f, "points [[x, y], …], each {range}"),
+            Self::Points(_, range) => write!(f, "points [[x, y, z], …], each {range}"),
+            Self::Names(1) => f.write_str("a name"),
+            Self::Names(count) => write!(f, "{count} names"),
             Self::Choice(words) => f.write_str(&words.join(", ")),
             Self::Switch => f.write_str("true or false"),
             Self::Bounds(range) => write!(f, "{}, or the least and the greatest, each {range}", HOLD_WORDS.join(", ")),

@@ -33,7 +33,11 @@ holds! {
     f64: KeyType::Number(ANY_NUMBER);
     u32: KeyType::Whole(ANY_NUMBER);
     bool: KeyType::Switch;
-    Vec<[f64; 2]>: KeyType::Points(ANY_NUMBER);
+    String: KeyType::Names(1);
+}
+
+impl<const N: usize> HasKeyType for Vec<[f64; N]> {
+    const HOLDS: KeyType = KeyType::Points(N, ANY_NUMBER);
 }
 
 impl<const N: usize> HasKeyType for [f64; N] {
@@ -82,7 +86,7 @@ impl<T: HasKeyType> DefaultFromText for Option<T> {
 }
 
 /// An empty list, the only default that such a key has.
-impl DefaultFromText for Vec<[f64; 2]> {
+impl<const N: usize> DefaultFromText for Vec<[f64; N]> {
     fn typed(_: &str) -> Self {
         Self::new()
     }

@@ -39,13 +39,16 @@ pub enum Wrong {
     /// The value, by which its table has other keys, is wrong or missing, in words that follow the name of the key.
     /// Without it nothing else of the table can be judged.
     Kind(String),
+    /// The value cannot be kept for what it leads to, in words that follow the name of the key and say what would do; no
+    /// value is right in general.
+    Refused(String),
     /// The value is wrong, in a whole sentence.
     Said(String),
     /// The value is a name that nothing has: a whole sentence, and the names that would be right.
     Name(String, Vec<String>),
     /// Something follows from other numbers and names that is wrong: a whole sentence. It is not told once something
-    /// was made up.
-    Follows(String),
+    /// was made up. An example follows, empty for the usual one.
+    Follows(String, String),
     /// The value is wrong, in a whole sentence, and nothing behind it can be judged before it is right.
     Last(String),
     /// The whole file is wrong: a whole sentence, and an example.
@@ -126,7 +129,7 @@ impl Problem {
                 format!("{} is missing{}", called(&path, words), want(&path))
             }
             Wrong::UnknownKey(known) => self.unknown_key(known, words),
-            Wrong::Value(said) | Wrong::Kind(said) => {
+            Wrong::Value(said) | Wrong::Kind(said) | Wrong::Refused(said) => {
                 let own = want(&self.path);
                 // A reader of TOML knows the type alone; the words of the key go on from there.
                 let said = said
@@ -134,7 +137,7 @@ impl Problem {
                     .filter(|at| own.starts_with(&said[*at..]))
                     .map_or(said.as_str(), |at| &said[..at]);
                 let want = if said.contains("want ") { String::new() } else { own };
-                let verb = if said.starts_with("is ") || said.starts_with("has ") { " " } else { ": " };
+                let verb = if ["is ", "has ", "names "].iter().any(|verb| said.starts_with(verb)) { " " } else { ": " };
                 match self.path.0.is_empty() {
                     true => said.to_owned(),
                     false => format!("{}{verb}{said}{want}", called(&self.path, words)),
@@ -142,7 +145,7 @@ impl Problem {
             }
             Wrong::Said(said)
             | Wrong::Name(said, _)
-            | Wrong::Follows(said)
+            | Wrong::Follows(said, _)
             | Wrong::Last(said)
             | Wrong::Whole(said, _) => said.clone(),
         }
@@ -232,10 +235,12 @@ fn value_in_words(said: &str) -> Option<String> {
         "a boolean" => ": want true or false",
         "a sequence" => ": want a list",
         "i8" | "u32" | "u64" | "usize" => ": want a whole number",
-        want if want.starts_with("struct ") => ": want a table",
+        want if want == "a map" || want.starts_with("struct ") => ": want a table",
         _ => "",
     };
+    let length = rest.rsplit_once("expected an array of length ").map(|(_, length)| length);
     match want {
+        "" if let Some(length) = length => Some(format!("is {is}: want a list of {length}")),
         "" => Some(format!("is {is}: want {}", rest.rsplit_once(", expected ")?.1)),
         want => Some(format!("is {is}{want}")),
     }
@@ -287,7 +292,7 @@ impl Mending<'_> {
             let Err(problem) = read(&self.file) else { return Faults::of(self.found, false) };
             let problem = Problem { path: problem.path.by_position(), ..problem };
             // What no mending changes ends the search, and what follows from made up numbers does not count.
-            let follows = matches!(problem.wrong, Wrong::Follows(_)) && !self.made_up.is_empty();
+            let follows = matches!(problem.wrong, Wrong::Follows(..)) && !self.made_up.is_empty();
             let here = Some((problem.clone(), self.file.span(&problem.path)));
             if before == here || follows {
                 return Faults::of(self.found, false);
@@ -329,7 +334,13 @@ impl Mending<'_> {
         // Elements of lists that were left out have changed the positions of others.
         let found = |path: &KeyPath| {
             let span = self.file.span(path).filter(|_| self.file.at(path).is_some());
-            span.map(|span| self.stated.path(&span)).filter(|found| found.0.len() == path.0.len())
+            let found = span.map(|span| self.stated.path(&span)).filter(|found| found.0.len() == path.0.len())?;
+            // A table that was renamed is called as it was meant.
+            let steps = path.0.iter().zip(found.0).map(|(own, found)| match own {
+                KeyStep::Key(_) => own.clone(),
+                _ => found,
+            });
+            Some(KeyPath(steps.collect()))
         };
         let stated = |path: &KeyPath| {
             // A key that is missing belongs to a table that is there.
@@ -361,6 +372,8 @@ impl Mending<'_> {
         let usual = |path: &KeyPath| words.example(path).map(|value| line(path, value)).unwrap_or_default();
         match &problem.wrong {
             Wrong::Whole(_, example) => example.clone(),
+            Wrong::Follows(_, example) if !example.is_empty() => example.clone(),
+            Wrong::Refused(_) => String::new(),
             Wrong::Name(_, known) => {
                 let given = self.file.at(&problem.path).and_then(|value| value.as_str()).unwrap_or_default();
                 let nearest = nearest_words(given, known.iter().map(String::as_str));
@@ -372,6 +385,10 @@ impl Mending<'_> {
                     let span = self.file.span(&problem.path).unwrap_or(0..0);
                     let value = self.file.text().get(span).filter(|value| !value.contains('\n') && value.len() < 80);
                     let path = problem.path.parent().unwrap_or_default().key(&meant);
+                    let is_table = self.file.at(&problem.path).is_some_and(|value| value.is_table());
+                    if is_table && value.is_none_or(|value| !value.starts_with('{')) {
+                        return header(&path);
+                    }
                     match value.filter(|value| !value.starts_with('[') || path.0.len() > 1) {
                         Some(value) => line(&path, value),
                         None => usual(&path),
@@ -404,12 +421,15 @@ impl Mending<'_> {
             return false;
         }
         match &problem.wrong {
-            Wrong::Whole(..) | Wrong::Follows(_) | Wrong::Last(_) => false,
+            Wrong::Whole(..) | Wrong::Follows(..) | Wrong::Last(_) => false,
             Wrong::Missing(_) => self.make_up(&key),
             Wrong::UnknownKey(known) => match problem.meant(known, words) {
                 Some(meant) if self.file.rename(&key, &meant) => {
-                    // Whether its value is right there is another matter.
-                    self.mark(&key.parent().unwrap_or_default().key(&meant));
+                    let key = key.parent().unwrap_or_default().key(&meant);
+                    // Whether its value is right there is another matter; that a table has keys is what was meant.
+                    if !self.file.at(&key).is_some_and(|value| value.is_table()) {
+                        self.mark(&key);
+                    }
                     true
                 }
                 _ => self.file.remove(&key),
@@ -421,7 +441,7 @@ impl Mending<'_> {
                 }
                 None => self.leave_out(&key),
             },
-            Wrong::Value(_) | Wrong::Said(_) => self.leave_out(&key),
+            Wrong::Value(_) | Wrong::Refused(_) | Wrong::Said(_) => self.leave_out(&key),
             Wrong::Kind(_) => match (key.parent(), self.words.example(&key)) {
                 (Some(table), Some(example)) => {
                     self.mark(&table);
@@ -454,9 +474,18 @@ impl Mending<'_> {
 }
 
 /// Returns a key as TOML wants it: in quotes unless it is one plain word.
-fn bare(key: &str) -> Cow<'_, str> {
+pub fn bare(key: &str) -> Cow<'_, str> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     if !key.is_empty() && key.chars().all(is_plain) { key.into() } else { format!("{key:?}").into() }
+}
+
+/// Returns the header of a table.
+fn header(path: &KeyPath) -> String {
+    let word = |step: &KeyStep| match step {
+        KeyStep::Key(key) | KeyStep::Named(_, key) => Some(bare(key).into_owned()),
+        KeyStep::At(_) => None,
+    };
+    format!("[{}]", path.0.iter().filter_map(word).collect::<Vec<_>>().join("."))
 }
 
 /// Returns a key of the file with its value, tables under their headers.

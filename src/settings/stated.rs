@@ -81,11 +81,29 @@ impl<'a> StatedFile<'a> {
         self.table.get_ref().keys().map(|key| key.get_ref().as_ref())
     }
 
+    /// Returns a file of the same text that states nothing.
+    #[must_use]
+    pub fn emptied(&self) -> Self {
+        Self { text: self.text, table: Spanned::new(0..0, DeTable::new()) }
+    }
+
+    /// Has a key of this file state what another file states at a place, if it states something there.
+    pub fn copy(&mut self, key: &str, from: &Self, path: &KeyPath) {
+        if let Some(found) = from.spanned(path) {
+            let key = Spanned::new(found.span(), Cow::Owned(key.to_owned()));
+            self.table.get_mut().insert(key, found.clone());
+        }
+    }
+
     /// Returns the value at a place; `None` if nothing is there.
     pub fn at(&self, path: &KeyPath) -> Option<&DeValue<'a>> {
-        let mut at: Option<&DeValue> = None;
+        self.spanned(path).map(Spanned::get_ref)
+    }
+
+    fn spanned(&self, path: &KeyPath) -> Option<&Spanned<DeValue<'a>>> {
+        let mut at: Option<&Spanned<DeValue>> = None;
         for step in &path.0 {
-            at = Some(next(self.table.get_ref(), at, step)?.get_ref());
+            at = Some(next(self.table.get_ref(), at.map(Spanned::get_ref), step)?);
         }
         at
     }
@@ -164,15 +182,29 @@ impl<'a> StatedFile<'a> {
         }
     }
 
-    /// Gives a key of a table another name, if no key has that name. Returns whether it did.
+    /// Gives a key of a table another name, if no key has that name. The keys of a table join those of a table that has
+    /// the name, if none is there twice. Returns whether it did.
     pub fn rename(&mut self, path: &KeyPath, name: &str) -> bool {
         let Some((KeyStep::Key(key), outer)) = path.0.split_last() else { return false };
         let Some(Outer::Table(table, _)) = self.outer(outer) else { return false };
-        if table.contains_key(name) {
-            return false;
-        }
+        let joins = match (table.get(name).map(Spanned::get_ref), table.get(key.as_str()).map(Spanned::get_ref)) {
+            (None, _) => false,
+            (Some(DeValue::Table(there)), Some(DeValue::Table(own))) => {
+                if own.keys().any(|key| there.contains_key(key.get_ref().as_ref())) {
+                    return false;
+                }
+                true
+            }
+            (Some(_), _) => return false,
+        };
         let Some((key, value)) = table.remove_entry(key.as_str()) else { return false };
-        table.insert(Spanned::new(key.span(), Cow::Owned(name.to_owned())), value);
+        match (value.into_inner(), table.get_mut(name).filter(|_| joins).map(Spanned::get_mut)) {
+            (DeValue::Table(own), Some(DeValue::Table(there))) => there.extend(own),
+            (value, _) => {
+                let span = key.span();
+                table.insert(Spanned::new(span.clone(), Cow::Owned(name.to_owned())), Spanned::new(span, value));
+            }
+        }
         true
     }
 
@@ -248,7 +280,8 @@ fn path_in_table(table: &DeTable, span: &Range<usize>, path: &mut Vec<KeyStep>) 
 
 fn path_in(value: &Spanned<DeValue>, span: &Range<usize>, path: &mut Vec<KeyStep>) -> bool {
     // A list of tables has the place of its first table, which is meant.
-    let of_tables = value.get_ref().as_array().filter(|list| list.iter().all(|one| one.get_ref().is_table()));
+    let of_tables =
+        value.get_ref().as_array().filter(|list| !list.is_empty() && list.iter().all(|one| one.get_ref().is_table()));
     if let Some(list) = of_tables {
         return path_in_list(list, span, path);
     }

@@ -73,6 +73,8 @@ fn states_of_blocks_have_a_wrench_in_space() {
         ("payload.mass=1", "one of carrier, wrist, as carrier.payload.mass"),
         ("wrist.gravity=0,1", "want gravity=x,y,z of the whole assembly"),
         ("gravity=0,1", "want x,y,z of the assembly"),
+        ("gravity=[0,-9.81]", "want x,y,z of the assembly"),
+        ("wrst.payload.mass=1", "want wrist.payload.mass (nearest) or the name of a block"),
         ("gravity=0,0,inf", "want three numbers"),
         ("wrist.payload.mass=-1", "block wrist"),
     ] {
@@ -113,7 +115,7 @@ fn blocks_follow_tasks_of_their_own() {
         (&["spectrum", "wrist-across"], "render and export-model take this one"),
         (&["headless", "case-1", "wrist-across", "-o", "x.rrd"], "recorded by itself"),
         (&["simulate", "wrist-across", "--signals", "nothing"], "no signal \"nothing\""),
-        (&["simulate", "wrist-across", "--set", "task.elbow.b=1"], "no block \"elbow\""),
+        (&["simulate", "wrist-across", "--set", "task.elbow.b=1"], "has no key \"elbow\": want one of carrier, wrist"),
         (&["simulate", "wrist-across", "--set", "step=0"], "want 0.00001 to 0.01 s"),
         (&["machines", "two-arms", "-o", "x.toml"], "is an assembly"),
     ] {
@@ -205,10 +207,26 @@ fn assemblies_are_simulated_alone_and_with_settings() {
         (["--set", "against=left"], "want the names of two blocks"),
         (["--set", "against=left,middle"], "no block \"middle\""),
         (["--set", "against=left,left"], "left stands there twice"),
-        (["--set", "lead=3"], "want the name of a block"),
+        (["--set", "lead=3"], "the name of a block"),
+        (["--set", "lead=lft"], "want \"left\" (nearest)"),
+        (["--set", "task.lft.b=2"], "table of tasks has no key \"lft\": want left (nearest)"),
+        (["--set", "task.left.bb=2"], "task of block left has no key \"bb\": want b (nearest)"),
+        (["--set", "bse.mass=2"], "want base.mass (nearest)"),
+        (["--set", "base.stifness=2"], "want stiffness (nearest)"),
+        (["--set", "base.stiffness=1,1,1,1,1,1"], "base.stiffness has no use here: want base.kind = compliant"),
+        (["--set", "task.left.moment_limit=1e-99"], "(task.left.moment_limit) is 1e-99: want 1e-9 to 1e9 N m"),
     ] {
         refuses(&[&["simulate", "arm-against-arm"], &words[..]].concat(), said);
     }
+    // What has no use in the file is a note, with which the run goes on.
+    let folder = Folder::new("idle-base");
+    let file = word(folder.file("idle.toml", "machine = \"two-arms\"\n[base]\nmass = 3\n"));
+    let out = stillbase(&["simulate", &file, "--json"]);
+    let notes = text(&out.stderr);
+    assert!(
+        out.status.success() && notes.contains("note: idle: base.mass has no use there: want base.kind = free"),
+        "{notes}"
+    );
 }
 
 /// What takes one machine says that it got several.

@@ -125,20 +125,32 @@ fn faults_are_told_in_their_lines() {
     assert_eq!(told(good), "");
     assert_eq!(told(&format!("{good}{free}")), "");
     for (text, words) in [
-        (good.replace("b = 1.2", "b = 1e99"), "led.toml:9: block b: "),
-        (good.replace("kind = \"reactionless\"\nb = 1.2", "kind = \"quick\"\nb = 1.2"), "led.toml:8: block b: "),
-        (good.replace("[task.b]", "[task.c]"), "led.toml:7: task.c: no block \"c\": want a block"),
-        (good.replace("[0.3, 0]", "[0.3]"), "led.toml:11: block b: "),
+        (
+            good.replace("b = 1.2", "b = 1e99"),
+            "led.toml:9: pose constant at A of block b (task.b.b) is 1e99: want -1000 to 1000 rad",
+        ),
+        (
+            good.replace("kind = \"reactionless\"\nb = 1.2", "kind = \"quick\"\nb = 1.2"),
+            "led.toml:8: kind of motion of block b (task.b.kind) is \"quick\": want ",
+        ),
+        (good.replace("[task.b]", "[task.c]"), "led.toml:7: table of tasks has no key \"c\": want one of a, b"),
+        (good.replace("[0.3, 0]", "[0.3]"), "led.toml:11: point B of block b (task.b.to) has 1 value instead of 2"),
         (good.split("[task.b]").next().expect("text").to_owned(), "block b has no task"),
-        (format!("{good}step = 3\n").replace("[task.b]", "[task.b]\nlaw = \"x\""), "block b: "),
-        (format!("step = 3\n{good}"), "led.toml:1: step: is 3: want 0.00001 to 0.01 s"),
-        (format!("{good}{}", free.replace("mass = 3", "mass = -3")), "led.toml:14: base.mass: want the mass"),
-        (format!("{good}{}", free.replace("[1, 1, 1]", "[1, 1]")), "base.inertia: want [x, y, z]"),
+        (
+            format!("{good}step = 3\n").replace("[task.b]", "[task.b]\nlaw = \"x\""),
+            "time law of block b (task.b.law) is \"x\": want one of quintic",
+        ),
+        (format!("step = 3\n{good}"), "led.toml:1: step is 3: want 0.00001 to 0.01 s"),
+        (
+            format!("{good}{}", free.replace("mass = 3", "mass = -3")),
+            "led.toml:14: mass of the base (base.mass) is -3: want 1e-9 to 1e9 kg",
+        ),
+        (format!("{good}{}", free.replace("[1, 1, 1]", "[1, 1]")), "(base.inertia) has 2 numbers: want [x, y, z]"),
         (format!("{good}{}", free.replace("[1, 1, 1]", "[1, 1, 5]")), "none more than the two others together"),
         (format!("{good}{}", free.replace("[1, 1, 1]", "[1, 2, 0, 0, 1, 0, 0, 0, 1]")), "symmetric"),
         (format!("{good}{}", free.replace("kind = \"free\"", "kind = \"afloat\"")), "led.toml:13: "),
-        (format!("color = 3\n{good}"), "led.toml:1: unknown field `color`"),
-        ("machine = ".to_owned(), "led.toml: "),
+        (format!("color = 3\n{good}"), "led.toml:1: the file has no key \"color\": want one of name, "),
+        ("machine = ".to_owned(), "led.toml:1: this is not TOML: "),
     ] {
         let said = told(&text);
         assert!(said.contains(words), "{words}: {said}");

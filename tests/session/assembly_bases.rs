@@ -102,24 +102,35 @@ fn faults_of_bases_are_told() {
     let assembly = builtin("wrist-off-its-pin");
     let springs = "kind = \"compliant\"\nmass = 20\ninertia = [1, 1.2, 1.5]\n";
     for (base, words) in [
-        (springs.to_owned(), "base.stiffness: want six numbers"),
-        (format!("{springs}stiffness = [1, 2, 3]"), "base.stiffness: want six numbers"),
+        (springs.to_owned(), "(base.stiffness) is missing: want six numbers"),
+        (format!("{springs}stiffness = [1, 2, 3]"), "(base.stiffness) has 3 numbers: want six numbers"),
         (format!("{springs}stiffness = [1, 2, 3, 4, 5, -6]"), "stiffness has the eigenvalue -6: want none below 0"),
-        (format!("{springs}stiffness = [1, 2, 3, 4, 5, nan]"), "base.stiffness: holds NaN: want numbers of at most"),
-        (format!("{springs}stiffness = [1, 2, 3, 4, 5, 6]\ndamping = [1]"), "base.damping: want six numbers"),
+        (format!("{springs}stiffness = [1, 2, 3, 4, 5, nan]"), "(base.stiffness) is not a number: want -1e9 to 1e9"),
         (
-            format!("{springs}stiffness = [1, 2, 3, 4, 5, 6]\nmomentum = [1, 2, 3]"),
-            "want kind = \"free\", or no momentum",
+            format!("{springs}stiffness = [1, 2, 3, 4, 5, 6]\ndamping = [1]"),
+            "(base.damping) has 1 number: want six numbers",
         ),
         (
             format!("kind = \"free\"\n{BODY}momentum = [1, nan, 3]"),
-            "base.momentum: is [1.0, NaN, 3.0]: want three numbers",
+            "momentum (base.momentum) is not a number: want -1e9 to 1e9",
         ),
-        (format!("kind = \"free\"\n{BODY}stiffness = [1]"), "want kind = \"compliant\", or no stiffness"),
-        ("damping = [1]".to_owned(), "want kind = \"compliant\", or no damping"),
+        (format!("kind = \"free\"\n{BODY}stiffness = [1]"), "(base.stiffness) has 1 number: want six numbers"),
     ] {
         let why = scenario(&assembly, &base).expect_err(&base);
         assert!(why.contains(words), "{base}: {why}");
+    }
+    // What is sound and has no use is told apart, and kept when the scenario is written.
+    for (base, want) in [
+        (format!("{springs}stiffness = [1, 2, 3, 4, 5, 6]\nmomentum = [1, 2, 3]"), &["base.momentum"][..]),
+        (format!("{BODY}damping = [1, 1, 1, 1, 1, 1]"), &["base.com", "base.damping", "base.inertia", "base.mass"]),
+        (format!("kind = \"free\"\n{BODY}momentum = [1, 2, 3]"), &[]),
+    ] {
+        let found = scenario(&assembly, &base).expect(&base);
+        let idle: Vec<(String, &str)> = found.ineffective_keys();
+        assert_eq!(idle.iter().map(|(path, _)| path.as_str()).collect::<Vec<_>>(), want, "{base}");
+        assert!(idle.iter().all(|(_, when)| when.starts_with("base.kind = ")), "{idle:?}");
+        let again = AssemblyScenario::parse(&found.to_toml(), "again.toml", assembly.clone()).expect("valid");
+        assert_eq!(again, found);
     }
     // A step too long for the springs is refused with one that does.
     let hard = format!("{springs}stiffness = [1e9, 1e9, 1e9, 1e8, 1e8, 1e8]");

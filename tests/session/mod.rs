@@ -5,6 +5,7 @@ mod any_drives;
 mod around;
 mod assembly;
 mod assembly_bases;
+mod assembly_words;
 mod bounds;
 mod branches;
 mod cases;

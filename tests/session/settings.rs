@@ -115,7 +115,7 @@ fn every_range_is_as_it_is_said() {
             let value = match key.value_type {
                 KeyType::List(count, _) => vec![outside; count].into(),
                 KeyType::Bounds(_) => vec![outside; 2].into(),
-                KeyType::Points(_) => Value::Array(vec![vec![outside, 0.0].into()]),
+                KeyType::Points(..) => Value::Array(vec![vec![outside, 0.0].into()]),
                 KeyType::Whole(_) if outside > range.high() => Value::Integer(outside.ceil() as i64),
                 KeyType::Whole(_) => Value::Integer(outside.floor() as i64),
                 _ => outside.into(),
@@ -253,13 +253,13 @@ fn any_change() -> impl Strategy<Value = (String, Value)> {
             KeyType::Number(range) | KeyType::PerDrive(range) => within(range.low(), range.high()).into(),
             KeyType::Whole(range) => Value::Integer(within(range.low(), range.high()).round() as i64),
             KeyType::List(count, range) => vec![within(range.low(), range.high()); count].into(),
-            KeyType::Points(_) => Value::Array(vec![vec![0.5, 0.4 + 0.1 * u].into()]),
+            KeyType::Points(..) => Value::Array(vec![vec![0.5, 0.4 + 0.1 * u].into()]),
             KeyType::Choice(words) => words[(u * words.len() as f64) as usize % words.len()].into(),
             KeyType::Switch => (u > 0.5).into(),
             KeyType::Bounds(_) if u > 0.5 => HOLD_WORDS[(u * 8.0) as usize % 2].into(),
             KeyType::Bounds(range) => vec![within(range.low(), range.high()); 2].into(),
             KeyType::Spread(_) => format!("normal:{}", 0.01 * u).into(),
-            KeyType::Rows => DEFAULT_WORD.into(),
+            KeyType::Rows | KeyType::EitherList(..) | KeyType::Names(_) => DEFAULT_WORD.into(),
         };
         (path, value)
     })

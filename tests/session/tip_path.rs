@@ -213,7 +213,7 @@ fn the_least_time_keeps_all_limits() {
         assert!((0.99..1.001).contains(&most), "{most}");
     }
     let why = scenario(&builtin("two-arms"), "to = [0.6, 0.4, 0.0]\nblock = \"nobody\"\n").expect_err("no block");
-    assert!(why.contains("tip.block: no block \"nobody\": want one of"), "{why}");
+    assert!(why.contains("(tip.block) names no block \"nobody\": want one of"), "{why}");
 }
 
 /// With the fastest law some drive is near its limit nearly all the time, none passes it, the way is straight, and every
@@ -290,18 +290,26 @@ fn proposals_work_as_printed() {
     let choice = why.rsplit_once("want choice = ").expect(&why).1;
     scenario(&assembly, &format!("{way}choice = {choice}\n")).expect("as proposed");
     for (text, words) in [
-        ("time = 1.0\n", "tip.to: want a place"),
-        ("to = [0.4, 0.4]\n", "want three numbers"),
-        ("to = [0.45, 0.55, nan]\n", "want three numbers, m"),
-        ("to = [0.45, 0.55, 0.1]\ntime = -1.0\n", "tip.time: is -1"),
-        ("to = [0.45, 0.55, 0.1]\nlaw = \"trapezoidal\"\n", "tip.law: want quintic, septic or fastest"),
-        ("to = [0.45, 0.55, 0.1]\nlaw = \"fastest\"\ntime = 1.0\n", "tip.time: has no use with law = \"fastest\""),
-        ("to = [0.45, 0.55, 0.1]\nb = { arm = nan }\n", "tip.b: b of arm is no angle"),
+        ("time = 1.0\n", "(tip.to): want a place"),
+        ("to = [0.4, 0.4]\n", "(tip.to) has 2 values instead of 3: want three numbers"),
+        ("to = [0.45, 0.55, nan]\n", "(tip.to) is not a number: want -1000000 to 1000000 m"),
+        ("to = [0.45, 0.55, 0.1]\ntime = -1.0\n", "(tip.time) is -1: want 0.001 to 3600 s"),
+        (
+            "to = [0.45, 0.55, 0.1]\nlaw = \"trapezoidal\"\n",
+            "(tip.law) is \"trapezoidal\": want one of quintic, septic, fastest",
+        ),
+        (
+            "to = [0.45, 0.55, 0.1]\nb = { arm = nan }\n",
+            "b of block arm on the path (tip.b.arm) is not a number: want -1000 to 1000 rad",
+        ),
         (
             "to = [0.45, 0.55, 0.1]\nb = { leg = 1.0 }\n",
-            "no block \"leg\" moves this end effector: want carrier or arm",
+            "table of b on the path has no key \"leg\": want one of carrier, arm",
         ),
-        ("to = [0.45, 0.55, 0.1]\n[task.arm]\nkind = \"reactionless\"\n", "[tip] leads block arm"),
+        (
+            "to = [0.45, 0.55, 0.1]\n[task.arm]\nkind = \"reactionless\"\n",
+            "task of block arm (task.arm) is that of a block which [tip] leads",
+        ),
     ] {
         let why = refused(text);
         assert!(why.contains(words), "{text}{why}");

@@ -5,8 +5,8 @@ use toml::Value;
 
 use super::model::{Assembly, AssemblyError};
 use super::words::AssemblyWords;
-use crate::machine::{FileError, FirstProblem, Machine, MachineError, parse_with};
-use stillbase_settings::mending::{Problem, Wrong};
+use crate::machine::{FileError, FirstProblem, KeyPath, Machine, MachineError, parse_with};
+use stillbase_settings::mending::{Problem, Wrong, called};
 use stillbase_settings::stated::StatedFile;
 
 /// The content of an assembly file. [`Assembly::new`] checks it.
@@ -118,7 +118,20 @@ fn read(file: &StatedFile, find: FindMachine<'_>) -> Result<Assembly, FirstProbl
     };
     let spec: AssemblySpec = file.read().map_err(|error| problem(Problem::of(file, &error)))?;
     Assembly::new(&spec, find).map_err(|AssemblyError { place, said, known }| {
-        let wrong = if known.is_empty() { Wrong::Value(said) } else { Wrong::Name(said, known) };
+        let wrong = match known.is_empty() {
+            // A direction is at a wrong angle to the other one, which may have been left out as wrong itself.
+            true if follows(file, &place) => {
+                Wrong::Follows(format!("{} {said}", called(&place, &AssemblyWords)), String::new())
+            }
+            true => Wrong::Value(said),
+            false => Wrong::Name(said, known),
+        };
         problem(Problem { path: place, wrong })
     })
+}
+
+/// Whether a place is a direction y of a block that states no x.
+fn follows(file: &StatedFile, place: &KeyPath) -> bool {
+    let x = place.parent().unwrap_or_default().key("x");
+    place.fits("block.*.y") && file.at(&x).is_none()
 }

@@ -2,7 +2,7 @@
 
 use crate::machine::KeyPath;
 use stillbase_settings::mending::{Meant, Vocabulary};
-use stillbase_settings::word_row::{WordRow, row};
+use stillbase_settings::word_row::{MeantRow, WordRow, WordTable, row};
 
 const DIRECTION: &str = "a direction in space, three numbers";
 
@@ -22,7 +22,7 @@ const ROWS: &[WordRow] = &[
     row("block.*.y", "direction y of block *", DIRECTION, "[0, 1, 0]"),
 ];
 
-const MEANT: &[(&str, &[&str], Meant)] = &[
+const MEANT: &[MeantRow] = &[
     ("", &["blocks", "machine", "machines", "arm", "arms", "part", "module"], Meant::Key("block")),
     ("block.*", &["parent", "carrier", "carried_by", "base", "mount"], Meant::Key("on")),
     ("block.*", &["place", "position", "origin", "offset", "pos"], Meant::Key("at")),
@@ -32,27 +32,22 @@ const MEANT: &[(&str, &[&str], Meant)] = &[
 /// The words of assembly files.
 pub struct AssemblyWords;
 
-fn row_of(path: &KeyPath) -> Option<&'static WordRow> {
-    WordRow::of(ROWS, path)
-}
+const WORDS: WordTable = WordTable { rows: ROWS, meant: MEANT };
 
 impl Vocabulary for AssemblyWords {
     fn name(&self, path: &KeyPath) -> Option<String> {
-        row_of(path).map(|row| row.name_at(path))
+        WORDS.name(path)
     }
 
     fn want(&self, path: &KeyPath) -> Option<String> {
-        row_of(path).map(|row| row.want.to_owned()).filter(|want| !want.is_empty())
-    }
-
-    fn meant(&self, path: &KeyPath) -> Option<Meant> {
-        let (word, table) = (path.last_key()?.to_lowercase(), path.parent()?);
-        let is_of = |pattern: &str| if pattern.is_empty() { table.0.is_empty() } else { table.fits(pattern) };
-        let found = MEANT.iter().find(|(pattern, words, _)| is_of(pattern) && words.contains(&word.as_str()));
-        found.map(|(.., meant)| *meant)
+        WORDS.want(path)
     }
 
     fn example(&self, path: &KeyPath) -> Option<&'static str> {
-        row_of(path).map(|row| row.example).filter(|example| !example.is_empty())
+        WORDS.example(path)
+    }
+
+    fn meant(&self, path: &KeyPath) -> Option<Meant> {
+        WORDS.meant(path)
     }
 }

@@ -71,7 +71,9 @@ fn problem(file: &StatedFile, error: &MachineError) -> Problem {
             Problem { path, wrong: Wrong::Name(said, known.clone()) }
         }
         MachineError::Cycle { .. } => Problem { path, wrong: Wrong::Said(said) },
-        MachineError::OpenLoop { .. } | MachineError::Massless { .. } => Problem { path, wrong: Wrong::Follows(said) },
+        MachineError::OpenLoop { .. } | MachineError::Massless { .. } => {
+            Problem { path, wrong: Wrong::Follows(said, String::new()) }
+        }
         _ if path.0.is_empty() => Problem { path, wrong: Wrong::Whole(said, String::new()) },
         // A length that the shape of a part has, and the file does not state.
         MachineError::Part { .. } if file.at(&path).is_none() && path.last_key().is_some_and(is_length_of_part) => {

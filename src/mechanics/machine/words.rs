@@ -4,7 +4,7 @@ use super::error::{KeyPath, KeyStep};
 use super::keys::KeyRow;
 use stillbase_settings::mending::{Meant, Vocabulary, called, with_key};
 use stillbase_settings::stated::StatedFile;
-use stillbase_settings::word_row::{WordRow, row};
+use stillbase_settings::word_row::{MeantRow, WordRow, WordTable, row};
 
 const OF_DRIVE: &str = "the name of a drive";
 const OF_LINK: &str = "the name of a link";
@@ -173,8 +173,7 @@ const BELT: &str = "a belt from the base is a drive of its own: want a [[drive]]
 
 const BELT_LINES: &str = "[[drive]]\nname = \"2\"\nrotor = { inertia = 1e-4, ratio = 3 }";
 
-/// Words that people write, with what they mean in a table: the table, the words, and the meaning.
-const MEANT: &[(&str, &[&str], Meant)] = &[
+const MEANT: &[MeantRow] = &[
     (
         "",
         &["belts", "belt", "pulley", "pulleys", "transmission", "transmissions", "gear", "gears"],
@@ -240,23 +239,20 @@ pub(super) fn with_names(example: String, links: &[&str], drives: &[&str]) -> St
     own(drives, &["drive", "to", "from"], own(links, &["link"], example))
 }
 
-fn row_of(path: &KeyPath) -> Option<&'static WordRow> {
-    WordRow::of(ROWS, path)
-}
+const WORDS: WordTable = WordTable { rows: ROWS, meant: MEANT };
 
 impl Vocabulary for MachineWords {
     fn name(&self, path: &KeyPath) -> Option<String> {
-        row_of(path).map(|row| row.name_at(path))
+        WORDS.name(path)
     }
 
     fn want(&self, path: &KeyPath) -> Option<String> {
-        let row = row_of(path)?;
-        let of_key = || KeyRow::of(row.path).map(|row| row.key.value_type.to_string());
-        if row.want.is_empty() { of_key() } else { Some(row.want.into()) }
+        let of_key = || KeyRow::of(WORDS.row(path)?.path).map(|row| row.key.value_type.to_string());
+        WORDS.want(path).or_else(of_key)
     }
 
     fn example(&self, path: &KeyPath) -> Option<&'static str> {
-        row_of(path).map(|row| row.example).filter(|example| !example.is_empty())
+        WORDS.example(path)
     }
 
     /// Examples are about the links and drives "1" and "2": these become the first two that the file names.
@@ -266,10 +262,7 @@ impl Vocabulary for MachineWords {
     }
 
     fn meant(&self, path: &KeyPath) -> Option<Meant> {
-        let (word, table) = (path.last_key()?.to_lowercase(), path.parent()?);
-        let is_of = |pattern: &str| if pattern.is_empty() { table.0.is_empty() } else { table.fits(pattern) };
-        let found = MEANT.iter().find(|(pattern, words, _)| is_of(pattern) && words.contains(&word.as_str()));
-        found.map(|(.., meant)| *meant)
+        WORDS.meant(path)
     }
 }
 
@@ -294,5 +287,5 @@ pub fn named(place: &KeyPath) -> String {
 /// The key may hold `*` for every link or length.
 pub fn pattern_of(path: &str) -> Option<(&'static str, &'static str)> {
     let path = KeyPath(path.split('.').map(|part| KeyStep::Key(part.into())).collect());
-    row_of(&path).map(|row| (row.path, row.name))
+    WORDS.row(&path).map(|row| (row.path, row.name))
 }

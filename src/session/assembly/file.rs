@@ -2,24 +2,31 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix6, Vector3};
-use serde::Deserialize;
+use nalgebra::{Matrix3, Matrix6, Vector3};
+use serde::de::{Error as _, IgnoredAny};
+use serde::{Deserialize, Deserializer};
 use toml::{Table, Value};
 
 use super::base::{AssemblyBase, FreeBase, SpringBase, inertia_of, six_by_six};
+use super::keys::{USUAL_STEP, assembly_key_of};
+use super::stated_base::StatedBase;
 use super::tip::{TipChain, TipError, TipPath};
+use super::words::AssemblyScenarioWords;
 use crate::Run;
 use crate::gentle_motion::gentle_motion;
-use crate::scenario::{Scenario, ScenarioError};
-use stillbase_mechanics::assembly::{Assembly, Compliance, Momentum, SpatialBase, builtin_assemblies};
-use stillbase_mechanics::machine::{KeyPath, Machine, Payload};
+use crate::scenario::{Scenario, ScenarioError, Task, TaskKind, read_of_machine};
+use stillbase_mechanics::assembly::{Assembly, Compliance, ComplianceError, Momentum, SpatialBase, builtin_assemblies};
+use stillbase_mechanics::machine::{KeyPath, KeyStep, Machine, Payload};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::curves::Samples;
 use stillbase_settings::change::{self, DEFAULT_WORD};
-use stillbase_settings::fault::{Fault, Faults};
-use stillbase_settings::range::{MAX_SAID, quote_clipped, shortened};
-use stillbase_settings::stated::StatedFile;
-use stillbase_settings::text::plain;
+use stillbase_settings::key::{self, Key};
+use stillbase_settings::mending::{Problem, Wrong, bare, faults_of};
+use stillbase_settings::range::{MAX_SAID, RangeCheck, quote_clipped, range_error, shortened};
+use stillbase_settings::spelling::nearest_words;
+use stillbase_settings::stated::{MendValue, StatedFile};
+use stillbase_settings::text::{control_character, plain};
+use stillbase_simulation::plant::BaseKind;
 
 /// A scenario of an assembly.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +53,8 @@ pub struct AssemblyScenario {
     pub tip: Option<TipTask>,
     /// Two blocks with parallel planes of which one changes its b against the other's, so that the base feels no moment.
     pub against: Option<[usize; 2]>,
+    /// Keys of the base that the file states, and of which its kind has no use.
+    pub idle: Table,
 }
 
 /// What a block does.
@@ -68,6 +77,9 @@ pub struct TipTask {
     pub points: Vec<[f64; 3]>,
 }
 
+/// A table whose keys are read later.
+type AnyTable = BTreeMap<String, IgnoredAny>;
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -77,171 +89,170 @@ struct File {
     #[serde(default)]
     summary: String,
     #[serde(rename = "machine")]
-    _machine: Value,
-    lead: Option<Value>,
-    against: Option<Value>,
+    _machine: IgnoredAny,
+    lead: Option<String>,
+    against: Option<BlockPair>,
     tip: Option<TipPath>,
     #[serde(default)]
-    task: BTreeMap<String, Table>,
+    task: BTreeMap<String, AnyTable>,
     /// Other settings of the scenarios of blocks, and their edits.
     #[serde(default)]
-    scenario: BTreeMap<String, Table>,
+    scenario: BTreeMap<String, AnyTable>,
     #[serde(default)]
-    base: BaseInFile,
+    base: StatedBase,
     step: Option<f64>,
     duration: Option<f64>,
 }
 
-#[derive(Clone, Copy, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum BaseKind {
-    #[default]
-    Fixed,
-    Free,
-    Compliant,
-}
+/// The names of two blocks: a list or, from the command line, words with a comma between them.
+struct BlockPair([String; 2]);
 
-impl BaseKind {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Free => "free",
-            Self::Compliant => "compliant",
+impl<'de> Deserialize<'de> for BlockPair {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Stated {
+            List(Vec<String>),
+            Words(String),
         }
+        let want = || D::Error::custom("want the names of two blocks, as [\"left\", \"right\"]");
+        let names: Vec<String> = match Stated::deserialize(from).map_err(|_| want())? {
+            Stated::List(list) => list,
+            Stated::Words(words) => {
+                words.trim_matches(['[', ']']).split(',').map(|word| word.trim().to_owned()).collect()
+            }
+        };
+        names.try_into().map(Self).map_err(|_| want())
     }
 }
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BaseInFile {
-    #[serde(default)]
-    kind: BaseKind,
-    mass: Option<f64>,
-    inertia: Option<Vec<f64>>,
-    #[serde(default)]
-    com: [f64; 3],
-    momentum: Option<[f64; 3]>,
-    angular_momentum: Option<[f64; 3]>,
-    stiffness: Option<Vec<f64>>,
-    damping: Option<Vec<f64>>,
-}
-
-/// Largest number of a base, in SI units.
-const MAX_NUMBER: f64 = 1e9;
-
-/// Range of the step, s, and of the duration, s.
-const STEP: [f64; 2] = [1e-5, 0.01];
-const DURATION: [f64; 2] = [1e-3, 1e6];
 
 /// Reads a scenario of an assembly.
 struct Reading<'a> {
-    file: StatedFile<'a>,
+    file: &'a StatedFile<'a>,
     label: &'a str,
+    assembly: &'a Assembly,
+    /// Names of the blocks.
+    names: &'a [String],
+}
+
+/// The first thing that is wrong.
+type First = Box<Problem>;
+
+fn first<T>(keys: &[&str], wrong: Wrong) -> Result<T, First> {
+    let path = KeyPath(keys.iter().map(|key| KeyStep::Key((*key).into())).collect());
+    Err(Box::new(Problem { path, wrong }))
+}
+
+fn wrong<T>(keys: &[&str], said: impl Into<String>) -> Result<T, First> {
+    first(keys, Wrong::Value(said.into()))
+}
+
+/// Tells why there is no such path of an end effector.
+fn refused<T>(TipError { key, said }: TipError) -> Result<T, First> {
+    first(&["tip", key], Wrong::Refused(said))
 }
 
 impl Reading<'_> {
-    fn wrong(&self, keys: &[&str], said: impl Into<String>) -> ScenarioError {
-        let path = KeyPath(keys.iter().map(|key| stillbase_mechanics::machine::KeyStep::Key((*key).into())).collect());
-        let key = keys.join(".");
-        // A key that is not stated is that of its table.
-        let place = (0..=path.0.len()).rev().find_map(|n| self.file.place(&KeyPath(path.0[..n].to_vec())));
-        let line = place.filter(|_| !keys.is_empty()).map(|place| place.line);
-        let said: String = said.into();
-        let text = if key.is_empty() { said } else { format!("{key}: {said}") };
-        self.faulty(Faults::one(Fault { line, column: None, key, text, example: String::new() }))
-    }
-
-    fn faulty(&self, faults: Faults) -> ScenarioError {
-        let (line, message) =
-            faults.list.first().map_or((None, String::new()), |fault| (fault.line, shortened(&fault.text, MAX_SAID)));
-        let first = Box::new(ScenarioError::Syntax { file: self.label.into(), line, message });
-        ScenarioError::Faulty { file: self.label.into(), first, faults: Box::new(faults) }
-    }
-
-    fn scenario(&self, assembly: Assembly) -> Result<AssemblyScenario, ScenarioError> {
-        let file: File = self.file.read().map_err(|error| {
-            let line = error.span().and_then(|span| self.file.place(&self.file.path(&span))).map(|place| place.line);
-            let text = shortened(error.message(), MAX_SAID);
-            self.faulty(Faults::one(Fault { line, column: None, key: String::new(), text, example: String::new() }))
-        })?;
-        let within = |key: &str, x: Option<f64>, [least, most]: [f64; 2]| match x {
-            Some(x) if !(least..=most).contains(&x) => {
-                Err(self.wrong(&[key], format!("is {x}: want {least} to {most} s")))
-            }
-            x => Ok(x),
-        };
-        let step = within("step", file.step, STEP)?;
-        let duration = within("duration", file.duration, DURATION)?;
-        let names: Vec<&str> = assembly.blocks().iter().map(|block| block.name.as_str()).collect();
-        let unknown = |name: &str| {
-            format!("no block {:?}: want a block of the assembly, one of {}", quote_clipped(name), names.join(", "))
-        };
-        for (key, of) in [("task", &file.task), ("scenario", &file.scenario)] {
-            if let Some(other) = of.keys().find(|key| !names.contains(&key.as_str())) {
-                return Err(self.wrong(&[key, other], unknown(other)));
+    /// Returns the place of a block that a key names.
+    fn place(&self, key: &str, name: &str) -> Result<usize, First> {
+        match self.names.iter().position(|own| own == name) {
+            Some(place) => Ok(place),
+            None => {
+                let nearest = nearest_words(name, self.names.iter().map(String::as_str));
+                let nearest: String = nearest.iter().map(|name| format!("{name:?} (nearest), or ")).collect();
+                let (name, all) = (quote_clipped(name), self.names.join(", "));
+                wrong(&[key], format!("names no block {name:?}: want {nearest}a block of the assembly, one of {all}"))
             }
         }
-        let lead = match &file.lead {
-            Some(name) => {
-                let name =
-                    name.as_str().ok_or_else(|| self.wrong(&["lead"], "want the name of a block, as \"arm\""))?;
-                names.iter().position(|own| *own == name).ok_or_else(|| self.wrong(&["lead"], unknown(name)))?
+    }
+
+    /// Checks that the keys of a table are names of blocks.
+    fn check_names<'n>(
+        &self,
+        table: &[&str],
+        keys: impl IntoIterator<Item = &'n String>,
+        known: &[String],
+    ) -> Result<(), First> {
+        match keys.into_iter().find(|key| !known.contains(key)) {
+            Some(other) => first(&[table, &[other]].concat(), Wrong::UnknownKey(known.to_vec())),
+            None => Ok(()),
+        }
+    }
+
+    /// Checks that names are printable and numbers in their ranges.
+    fn check_values(&self, file: &File) -> Result<(), First> {
+        let name = file.name.as_deref().unwrap_or_default();
+        for (key, text) in [("name", name), ("title", &file.title), ("summary", &file.summary)] {
+            if let Some(c) = control_character(text) {
+                let said = format!("holds the control character U+{:04X}: want printable characters", u32::from(c));
+                return wrong(&[key], said);
             }
-            None => 0,
-        };
-        let step = step.unwrap_or(USUAL_STEP);
+        }
+        let stated: Table = self.file.read().unwrap_or_default();
+        let own = |key: &&String| !["machine", "task", "scenario"].contains(&key.as_str());
+        let stated: Table = stated.iter().filter(|(key, _)| own(key)).map(|(k, v)| (k.clone(), v.clone())).collect();
+        match key::checks(assembly_key_of, &stated).into_iter().find(|check| !check.ok) {
+            Some(RangeCheck { key, value, want, .. }) => {
+                let said = range_error("", value, &want).trim_start().to_owned();
+                Err(Box::new(Problem { path: KeyPath::of_key(&key), wrong: Wrong::Value(said) }))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn scenario(&self) -> Result<AssemblyScenario, First> {
+        let (assembly, names) = (self.assembly, self.names);
+        let file: File = self.file.read().map_err(|error| Box::new(Problem::of(self.file, &error)))?;
+        self.check_names(&["task"], file.task.keys(), names)?;
+        self.check_names(&["scenario"], file.scenario.keys(), names)?;
+        for (block, keys) in &file.scenario {
+            self.check_names(&["scenario", block], keys.keys(), &BLOCK_KEYS.map(str::to_owned))?;
+        }
+        self.check_values(&file)?;
+        let lead = file.lead.as_deref().map_or(Ok(0), |name| self.place("lead", name))?;
+        let pair = file.against.as_ref().map(|BlockPair(pair)| self.pair(pair)).transpose()?;
+        let base = self.base(&file.base)?;
         let chain = match &file.tip {
-            Some(path) => {
-                let tip_error = |TipError { key, said }| self.wrong(&["tip", key], said);
-                let block = path.block(&assembly).map_err(tip_error)?;
-                TipChain::of(&assembly, block, &path.b).map_err(tip_error)?.blocks().to_vec()
-            }
+            Some(path) => self.chain(path)?,
             None => Vec::new(),
         };
+        let step = file.step.unwrap_or(USUAL_STEP);
         let mut tasks: Vec<Option<BlockTask>> = vec![None; names.len()];
         for (i, block) in assembly.blocks().iter().enumerate() {
-            let (stated, other) = (file.task.get(&block.name), file.scenario.get(&block.name));
+            let stated = file.task.contains_key(&block.name);
             if chain.contains(&i) {
-                if stated.is_some() {
-                    let said = format!("[tip] leads block {}: want no task of its own, or no [tip]", block.name);
-                    return Err(self.wrong(&["task", &block.name], said));
+                if stated {
+                    let said = "is that of a block which [tip] leads: want no task of its own, or no [tip]";
+                    return first(&["task", &block.name], Wrong::Refused(said.into()));
                 }
                 continue;
             }
             let task = match (stated, &block.machine.spec().pose) {
-                (Some(task), _) => task.clone(),
-                (None, Some(pose)) => resting(pose),
-                (None, None) => {
-                    let said = format!(
-                        "block {} has no task, and its machine no pose to rest in: want [task.{}]",
-                        block.name, block.name
-                    );
-                    return Err(self.wrong(&["task"], said));
-                }
+                (true, _) => None,
+                (false, Some(pose)) => Some(self.sampled(i, resting(pose))?),
+                (false, None) => continue,
             };
-            let scenario = self.of_block(&assembly, i, (task, other), step)?;
-            tasks[i] = Some(BlockTask { rests: stated.is_none() && scenario.edits.is_empty(), scenario });
+            let scenario = self.of_block(i, task.as_ref())?;
+            tasks[i] = Some(BlockTask { rests: !stated && scenario.edits.is_empty(), scenario });
+        }
+        if let Some(i) = (0..tasks.len()).find(|i| tasks[*i].is_none() && !chain.contains(i)) {
+            let name = &names[i];
+            let said = format!("block {name} has no task, and its machine no pose to rest in: want [task.{name}]");
+            return first(&["task", name], Wrong::Follows(said, self.some_task(i)));
         }
         let mut points = Vec::new();
         if let Some(path) = &file.tip {
             let rest: Vec<DriveAngles> = tasks.iter().map(rest_of).collect();
-            let plan = path.plan(&assembly, &rest).map_err(|TipError { key, said }| self.wrong(&["tip", key], said))?;
+            let plan = path.plan(assembly, &rest).or_else(refused)?;
             points = plan.points;
             for (i, samples) in plan.blocks.iter().zip(plan.samples) {
-                let other = file.scenario.get(&assembly.blocks()[*i].name);
-                let scenario = self.of_block(&assembly, *i, (given(&samples), other), step)?;
-                tasks[*i] = Some(BlockTask { rests: false, scenario });
+                let task = self.sampled(*i, Some(samples))?;
+                tasks[*i] = Some(BlockTask { rests: false, scenario: self.of_block(*i, Some(&task))? });
             }
         }
         let tasks: Vec<BlockTask> = tasks.into_iter().flatten().collect();
         let stem =
             std::path::Path::new(self.label).file_stem().map_or_else(|| self.label.into(), |s| s.to_string_lossy());
-        let base = self.base(&file.base)?;
-        if matches!(base, AssemblyBase::Free(_)) && assembly.gravity != Vector3::zeros() {
-            let said =
-                "is free, but the assembly states gravity: want gravity = [0, 0, 0], as in orbit, or a fixed base";
-            return Err(self.wrong(&["base", "kind"], said));
-        }
         let mut whole = AssemblyScenario {
             name: file.name.unwrap_or_else(|| plain(&stem).into_owned()),
             title: file.title,
@@ -250,142 +261,144 @@ impl Reading<'_> {
             tasks,
             base,
             step,
-            duration,
+            duration: file.duration,
             lead,
             tip: file.tip.map(|path| TipTask { path, blocks: chain, points }),
             against: None,
+            idle: self.idle(&file.base),
         };
-        if let Some(pair) = &file.against {
-            let wrong = |said: String| self.wrong(&["against"], said);
-            let place = |name: &str| names.iter().position(|own| *own == name).ok_or_else(|| wrong(unknown(name)));
-            // On the command line a list is words with commas between them.
-            let pair: Vec<&str> = match pair {
-                Value::String(words) => words.split(',').map(str::trim).collect(),
-                Value::Array(list) => list.iter().filter_map(Value::as_str).collect(),
-                _ => Vec::new(),
-            };
-            let want = || wrong("want the names of two blocks, as [\"left\", \"right\"]".into());
-            let [one, other] = pair[..] else { return Err(want()) };
-            whole.bind([place(one)?, place(other)?]).map_err(wrong)?;
+        if let Some(pair) = pair {
+            whole.bind(pair).or_else(|said| first(&["against"], Wrong::Refused(said)))?;
         }
         Ok(whole)
     }
 
-    fn base(&self, base: &BaseInFile) -> Result<AssemblyBase, ScenarioError> {
-        let wrong = |key: &str, said: &str| self.wrong(&["base", key], said);
-        let BaseInFile { momentum, angular_momentum, stiffness, damping, .. } = base;
-        let is_of = |kind: BaseKind, key: &str, is_stated: bool| match is_stated && base.kind != kind {
-            true => Err(wrong(
-                key,
-                &format!("has no use there: want kind = \"{}\", or no {key} (--set base.{key}=default)", kind.word()),
-            )),
-            false => Ok(()),
-        };
-        is_of(BaseKind::Free, "momentum", momentum.is_some())?;
-        is_of(BaseKind::Free, "angular_momentum", angular_momentum.is_some())?;
-        is_of(BaseKind::Compliant, "stiffness", stiffness.is_some())?;
-        is_of(BaseKind::Compliant, "damping", damping.is_some())?;
-        if base.kind == BaseKind::Fixed {
+    /// Returns a task that a block can do, as lines of the file; empty if none is found.
+    fn some_task(&self, i: usize) -> String {
+        let made = holding(self.assembly, i).ok().and_then(|machine| gentle_motion(&machine).ok());
+        let task = made.and_then(|made| toml::to_string(&made.task).ok());
+        task.map_or_else(String::new, |task| format!("[task.{}]\n{}", bare(&self.names[i]), task.trim_end()))
+    }
+
+    /// Returns the places of two blocks.
+    fn pair(&self, pair: &[String; 2]) -> Result<[usize; 2], First> {
+        Ok([self.place("against", &pair[0])?, self.place("against", &pair[1])?])
+    }
+
+    /// Returns the places of the blocks that a path leads.
+    fn chain(&self, path: &TipPath) -> Result<Vec<usize>, First> {
+        let chain = path.chain(self.assembly).or_else(refused)?;
+        let known: Vec<String> = chain.iter().map(|i| self.names[*i].clone()).collect();
+        self.check_names(&["tip", "b"], path.b.keys(), &known)?;
+        TipChain::of(self.assembly, &chain, &path.b).map_or_else(refused, |_| Ok(chain))
+    }
+
+    /// Returns the stated keys of the base of which its kind has no use.
+    fn idle(&self, base: &StatedBase) -> Table {
+        let stated: Table = self.file.inner("base").and_then(|inner| inner.read().ok()).unwrap_or_default();
+        base.idle(&stated)
+    }
+
+    fn base(&self, stated: &StatedBase) -> Result<AssemblyBase, First> {
+        let kind = stated.kind;
+        if kind == BaseKind::Fixed {
             return Ok(AssemblyBase::Fixed);
         }
-        let mass = base.mass.filter(|mass| *mass > 0.0 && *mass <= MAX_NUMBER);
-        let mass = mass.ok_or_else(|| wrong("mass", "want the mass of the base above 0, kg"))?;
-        let inertia = base.inertia.as_deref().and_then(inertia_of);
-        let want = "want [x, y, z] about the centre of mass of the base, kg m², or nine numbers row by row, symmetric";
-        let inertia = inertia.filter(|inertia| inertia.iter().all(|x| x.abs() <= MAX_NUMBER));
-        let inertia = inertia.ok_or_else(|| wrong("inertia", want))?;
-        let asymmetry = (inertia - inertia.transpose()).amax();
-        if asymmetry > 1e-9 * inertia.amax() {
-            return Err(wrong("inertia", want));
-        }
-        let moments = inertia.symmetric_eigenvalues();
-        // Of a body no principal moment exceeds the sum of the two others.
-        let (sum, most) = (moments.sum(), moments.max());
-        if !(moments.min() > 0.0 && 2.0 * most <= sum * (1.0 + 1e-9)) {
-            let [a, b, c] = moments.into();
-            let said = format!(
-                "has the principal moments {a:.6}, {b:.6}, {c:.6} kg m²: want three above 0, none more than the two others \
-                 together"
-            );
-            return Err(wrong("inertia", &said));
-        }
-        if !base.com.iter().all(|x| x.abs() <= 1e6) {
-            return Err(wrong("com", "want three numbers, m"));
-        }
-        let body = SpatialBase { mass, com: base.com.into(), inertia };
-        if base.kind == BaseKind::Free {
-            let kept = |key: &str, stated: &Option<[f64; 3]>, unit: &str| {
-                let numbers = stated.unwrap_or_default();
-                match numbers.iter().all(|x| x.abs() <= MAX_NUMBER) {
-                    true => Ok(Vector3::from(numbers)),
-                    false => Err(wrong(key, &format!("is {numbers:?}: want three numbers, {unit}"))),
-                }
-            };
-            let linear = kept("momentum", momentum, "kg m/s")?;
-            let angular = kept("angular_momentum", angular_momentum, "kg m²/s, about the common centre of mass")?;
+        let missing = |key: &str| first(&["base"], Wrong::Missing(key.into()));
+        let Some(mass) = stated.mass else { return missing("mass") };
+        let Some(inertia) = &stated.inertia else { return missing("inertia") };
+        let body = SpatialBase { mass, com: stated.com.into(), inertia: sound_inertia(&inertia.0)? };
+        if kind == BaseKind::Free {
+            if self.assembly.gravity != Vector3::zeros() {
+                let said =
+                    "is free, but the assembly states gravity: want gravity = [0, 0, 0], as in orbit, or a fixed base";
+                return first(&["base", "kind"], Wrong::Refused(said.into()));
+            }
+            let (linear, angular) = (stated.momentum.into(), stated.angular_momentum.into());
             return Ok(AssemblyBase::Free(FreeBase { body, kept: Momentum { linear, angular } }));
         }
-        let six = |key: &str, stated: &Option<Vec<f64>>, unit: &str| {
-            let numbers = stated.as_deref().unwrap_or_default();
-            if let Some(x) = numbers.iter().find(|x| x.is_nan() || x.abs() > MAX_NUMBER) {
-                return Err(wrong(key, &format!("holds {x}: want numbers of at most {MAX_NUMBER}, {unit}")));
-            }
-            six_by_six(numbers).ok_or_else(|| {
-                wrong(key, &format!("want six numbers, along and about x, y, z, {unit}, or all 36 row by row"))
-            })
+        let Some(stiffness) = stated.stiffness.as_ref().and_then(|list| six_by_six(&list.0)) else {
+            return missing("stiffness");
         };
-        let stiffness = six("stiffness", stiffness, "N/m and N m/rad")?;
-        let damping = match damping {
-            Some(_) => six("damping", damping, "N s/m and N m s")?,
-            None => Matrix6::zeros(),
-        };
-        Compliance::new(&stiffness, &damping).map_err(|why| self.wrong(&["base"], why.to_string()))?;
+        let damping = stated.damping.as_ref().and_then(|list| six_by_six(&list.0)).unwrap_or_else(Matrix6::zeros);
+        Compliance::new(&stiffness, &damping).or_else(|why| {
+            let (ComplianceError::NotFinite { what, .. }
+            | ComplianceError::NotSymmetric { what, .. }
+            | ComplianceError::Negative { what, .. }) = &why;
+            first(&["base", *what], Wrong::Said(format!("base.{why}")))
+        })?;
         Ok(AssemblyBase::Compliant(Box::new(SpringBase { body, stiffness, damping })))
     }
 
-    /// Returns the task of a block, and its other settings, as a scenario of its machine with what it carries as payload.
-    fn of_block(
-        &self,
-        assembly: &Assembly,
-        i: usize,
-        (task, other): (Table, Option<&Table>),
-        step: f64,
-    ) -> Result<Scenario, ScenarioError> {
-        let block = &assembly.blocks()[i];
-        let machine = holding(assembly, i).map_err(|why| self.wrong(&["task", &block.name], why))?;
-        let mut text = other.cloned().unwrap_or_default();
-        if let Some(key) = text.keys().find(|key| !BLOCK_KEYS.contains(&key.as_str())) {
-            let said = format!("is no setting of a block: want one of {}", BLOCK_KEYS.join(", "));
-            return Err(self.wrong(&["scenario", &block.name, key], said));
-        }
-        text.insert("step".into(), Value::Float(step));
-        let spec =
-            Value::try_from(machine.spec()).map_err(|why| self.wrong(&["task", &block.name], why.to_string()))?;
-        text.insert("name".into(), Value::String(block.name.clone()));
-        text.insert("machine".into(), spec);
-        text.insert("task".into(), Value::Table(task));
-        Scenario::parse(&text.to_string(), self.label, None).map_err(|error| {
-            let ScenarioError::Faulty { faults, .. } = error else {
-                return self.wrong(&["task", &block.name], error.to_string());
-            };
-            let placed = faults.list.into_iter().map(|fault| self.placed(&block.name, fault));
-            self.faulty(Faults { list: placed.collect(), ..*faults })
-        })
+    /// Returns the task of a block that samples lead.
+    fn sampled(&self, i: usize, samples: Option<Samples>) -> Result<Task, First> {
+        let name = &self.names[i];
+        let machine = holding(self.assembly, i).or_else(|why| wrong(&["task", name], why))?;
+        let made = samples.and_then(|samples| Task::sampled(TaskKind::Given, samples, None, &machine).ok());
+        made.map_or_else(|| wrong(&["task", name], "is missing, and cannot be made: want one"), Ok)
     }
 
-    /// Gives a fault of a block's task its place in this file.
-    fn placed(&self, block: &str, fault: Fault) -> Fault {
-        let first = fault.key.split(['.', '[']).next().unwrap_or_default();
-        let key = match fault.key.strip_prefix("task") {
-            Some(rest) => format!("task.{block}{rest}"),
-            None if BLOCK_KEYS.contains(&first) => format!("scenario.{block}.{}", fault.key),
-            None => format!("task.{block}"),
-        };
-        let path = KeyPath::of_key(&key);
-        let place = (0..=path.0.len()).rev().find_map(|n| self.file.place(&KeyPath(path.0[..n].to_vec())));
-        let text = format!("block {block}: {}", fault.text);
-        Fault { line: place.map(|place| place.line), column: place.map(|place| place.column), key, text, ..fault }
+    /// Returns what the file states of a block as a scenario of its machine, with what it carries as payload; the task is the
+    /// given one, or that of the file.
+    fn of_block(&self, i: usize, task: Option<&Task>) -> Result<Scenario, First> {
+        let block = &self.assembly.blocks()[i];
+        let machine = holding(self.assembly, i).or_else(|why| wrong(&["task", &block.name], why))?;
+        let of_block = self.file.inner("scenario").and_then(|all| all.inner(&block.name));
+        let mut own = of_block.unwrap_or_else(|| self.file.emptied());
+        own.copy("step", self.file, &KeyPath::new(&[&"step"]));
+        match task {
+            Some(_) => drop(own.set(&KeyPath::new(&[&"task"]), &MendValue::Toml("{}"))),
+            None => own.copy("task", self.file, &KeyPath::new(&[&"task", &block.name])),
+        }
+        for key in ["name", "machine"] {
+            own.set(&KeyPath::new(&[&key]), &MendValue::Word(block.name.clone()));
+        }
+        read_of_machine(&own, self.label, &machine, task).map_err(|problem| Box::new(placed(&block.name, problem)))
     }
+}
+
+/// Gives a problem of a block its place in this file.
+fn placed(block: &str, Problem { path, wrong }: Problem) -> Problem {
+    let part = path.0.first().map_or("task", |step| match step {
+        KeyStep::Key(key) if BLOCK_KEYS.contains(&key.as_str()) => "scenario",
+        _ => "task",
+    });
+    let rest = match path.0.split_first() {
+        Some((KeyStep::Key(key), rest)) if key == "task" => rest.to_vec(),
+        _ if part == "scenario" => path.0,
+        _ => Vec::new(),
+    };
+    let head = [part, block].map(|key| KeyStep::Key(key.into()));
+    let said = |text: String| format!("block {block}: {text}");
+    let wrong = match wrong {
+        Wrong::Said(text) => Wrong::Said(said(text)),
+        Wrong::Name(text, known) => Wrong::Name(said(text), known),
+        Wrong::Follows(text, example) => Wrong::Follows(said(text), example),
+        Wrong::Last(text) => Wrong::Last(said(text)),
+        other => other,
+    };
+    Problem { path: KeyPath(head.into_iter().chain(rest).collect()), wrong }
+}
+
+/// Returns an inertia that a body can have.
+fn sound_inertia(numbers: &[f64]) -> Result<Matrix3<f64>, First> {
+    let key = ["base", "inertia"];
+    let Some(inertia) = inertia_of(numbers) else { return wrong(&key, "is no inertia") };
+    if (inertia - inertia.transpose()).amax() > 1e-9 * inertia.amax() {
+        return wrong(&key, "is not symmetric");
+    }
+    let moments = inertia.symmetric_eigenvalues();
+    // Of a body no principal moment exceeds the sum of the two others.
+    let (sum, most) = (moments.sum(), moments.max());
+    if !(moments.min() > 0.0 && 2.0 * most <= sum * (1.0 + 1e-9)) {
+        let [a, b, c] = moments.into();
+        let said = format!(
+            "has the principal moments {a:.6}, {b:.6}, {c:.6} kg m²: want three above 0, none more than the two others \
+             together"
+        );
+        return wrong(&key, said);
+    }
+    Ok(inertia)
 }
 
 /// Returns the machine of a block with what it carries held at its end effector.
@@ -400,23 +413,30 @@ pub(super) fn holding(assembly: &Assembly, i: usize) -> Result<Machine, String> 
 }
 
 /// Keys of a scenario that a block may state for itself, beside its task.
-const BLOCK_KEYS: [&str; 7] = ["control", "compare_b", "pose_acceleration", "edit", "bookmark", "note", "branch"];
-
-/// Step where none is stated, s.
-const USUAL_STEP: f64 = 1e-3;
+pub(super) const BLOCK_KEYS: [&str; 7] =
+    ["control", "compare_b", "pose_acceleration", "edit", "bookmark", "note", "branch"];
 
 /// Number and distance, s, of the samples of a block at rest.
 const REST_SAMPLES: u32 = 7;
 const REST_INTERVAL_S: f64 = 0.01;
 
-/// Returns the keys of a file with some of them changed; the word `default` removes a key.
+/// Returns the keys of a file with some of them changed; the word `default` removes a key, and so does `none` if that is its
+/// default.
 pub fn changed_keys(stated: Table, wanted: &Table) -> Table {
-    fn without_defaults(table: &mut Table) {
-        table.retain(|_, value| value.as_str() != Some(DEFAULT_WORD));
-        table.iter_mut().filter_map(|(_, value)| value.as_table_mut()).for_each(without_defaults);
+    fn without_defaults(at: &str, table: &mut Table) {
+        let path = |key: &str| if at.is_empty() { key.to_owned() } else { format!("{at}.{key}") };
+        table.retain(|key, value| match value.as_str() {
+            Some(DEFAULT_WORD) => false,
+            Some(Key::NONE) => assembly_key_of(&path(key)).is_none_or(|key| key.default != Key::NONE),
+            _ => true,
+        });
+        table
+            .iter_mut()
+            .filter_map(|(key, value)| Some((path(key), value.as_table_mut()?)))
+            .for_each(|(path, table)| without_defaults(&path, table));
     }
     let mut all = change::join(stated, wanted);
-    without_defaults(&mut all);
+    without_defaults("", &mut all);
     all
 }
 
@@ -452,21 +472,10 @@ fn rest_of(task: &Option<BlockTask>) -> DriveAngles {
     run.map_or_else(|| DriveAngles(PerDrive::zeros(0)), |run| run.plan().motion.at(0.0).q)
 }
 
-/// Returns the task of a block that samples lead.
-fn given(samples: &Samples) -> Table {
-    let row = |row: &[f64]| Value::Array(row.iter().map(|x| Value::Float(*x)).collect());
-    let rows = Value::Array(samples.rows().map(row).collect());
-    Table::from_iter([("kind".into(), Value::String("given".into())), ("samples".into(), rows)])
-}
-
-/// Returns the task of a block that rests in a pose, rad.
-fn resting(pose: &[f64]) -> Table {
-    let row = |i: u32| {
-        let time = f64::from(i) * REST_INTERVAL_S;
-        Value::Array([time].iter().chain(pose).map(|x| Value::Float(*x)).collect())
-    };
-    let samples = Value::Array((0..REST_SAMPLES).map(row).collect());
-    Table::from_iter([("kind".into(), Value::String("given".into())), ("samples".into(), samples)])
+/// Returns samples of a block that rests in a pose, rad.
+fn resting(pose: &[f64]) -> Option<Samples> {
+    let row = |i: u32| [&[f64::from(i) * REST_INTERVAL_S], pose].concat();
+    Samples::new(&(0..REST_SAMPLES).map(row).collect::<Vec<_>>()).ok()
 }
 
 impl AssemblyScenario {
@@ -498,7 +507,8 @@ impl AssemblyScenario {
         let is_led = |i: usize| self.tip.as_ref().is_some_and(|tip| tip.blocks.contains(&i));
         file.insert("step".into(), Value::Float(self.step));
         file.extend(self.duration.map(|duration| ("duration".to_owned(), Value::Float(duration))));
-        file.extend(base_to_table(&self.base).map(|base| ("base".to_owned(), Value::Table(base))));
+        let base: Table = base_to_table(&self.base).into_iter().flatten().chain(self.idle.clone()).collect();
+        file.insert("base".into(), Value::Table(base));
         let (mut tasks, mut others) = (Table::new(), Table::new());
         for (i, (block, task)) in self.assembly.blocks().iter().zip(&self.tasks).enumerate() {
             let mut own: Table = task.scenario.to_toml().parse().expect("a scenario is written as TOML");
@@ -517,13 +527,20 @@ impl AssemblyScenario {
     /// # Errors
     /// If the text is no such scenario; the error names the line.
     pub fn parse(text: &str, label: &str, assembly: Assembly) -> Result<Self, ScenarioError> {
-        match StatedFile::parse(text) {
-            Ok(file) => Reading { file, label }.scenario(assembly),
-            Err(errors) => {
-                let message = errors.first().map_or("this is not TOML", |error| error.message());
-                Err(ScenarioError::Syntax { file: label.into(), line: None, message: shortened(message, MAX_SAID) })
-            }
-        }
+        let names: Vec<String> = assembly.blocks().iter().map(|block| block.name.clone()).collect();
+        let read = |file: &StatedFile| Reading { file, label, assembly: &assembly, names: &names }.scenario();
+        let words = AssemblyScenarioWords { blocks: &names };
+        let first = match StatedFile::parse(text).map(|file| (read(&file), file)) {
+            Ok((Ok(scenario), _)) => return Ok(scenario),
+            Ok((Err(problem), file)) => Some((file.place(&problem.path).map(|place| place.line), problem.text(&words))),
+            Err(_) => None,
+        };
+        let faults = faults_of(text, &words, &|file| read(file).map(|_| ()).map_err(|problem| *problem));
+        let of_list = || faults.list.first().map(|fault| (fault.line, fault.text.clone())).unwrap_or_default();
+        let (line, message) = first.unwrap_or_else(of_list);
+        let message = shortened(&message, MAX_SAID);
+        let first = Box::new(ScenarioError::Syntax { file: label.into(), line, message });
+        Err(ScenarioError::Faulty { file: label.into(), first, faults: Box::new(faults) })
     }
 
     /// Returns a scenario in which each block does a small motion of its own.
@@ -552,6 +569,7 @@ impl AssemblyScenario {
             lead: 0,
             tip: None,
             against: None,
+            idle: Table::new(),
         })
     }
 
@@ -564,6 +582,7 @@ impl AssemblyScenario {
             return Ok(self);
         }
         let stated: Table = self.to_toml().parse().unwrap_or_default();
-        Self::parse(&changed_keys(stated, change).to_string(), label, self.assembly)
+        let changed = changed_keys(stated, change).to_string();
+        Self::parse(&changed, label, self.assembly).map_err(|why| why.without_lines(label))
     }
 }

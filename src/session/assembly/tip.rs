@@ -3,13 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::{DVector, Vector3};
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize};
-
 use super::file::holding;
 use super::tip_time::{EASED_INSTANTS, TIME, fastest_leg, least_time};
 use crate::gentle_motion::gentle_motion;
+use crate::scenario::{POINT_RANGE, POSE_CONSTANT_RANGE};
+use nalgebra::{DVector, Vector3};
 use stillbase_mechanics::assembly::Assembly;
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::Motion;
@@ -18,8 +16,11 @@ use stillbase_planning::curves::{Path, Samples};
 use stillbase_planning::platform::{ChainBlock, FreedomChoice, PlatformChain, StopReason, Stopped, follow, pose_at};
 use stillbase_planning::pose_space::PoseSpace;
 use stillbase_planning::timing::{Profile, TimeLaw};
+use stillbase_settings::key::Key;
+use stillbase_settings::keyed::keyed;
 use stillbase_settings::number::significant;
-use stillbase_settings::word::Choice;
+use stillbase_settings::range::quote_clipped;
+use stillbase_settings::word::{Choice, words};
 
 /// Number of instants of each leg: the first try, and the most.
 const INSTANTS: [usize; 2] = [120, 1920];
@@ -30,57 +31,50 @@ const LEAST_INSTANTS: usize = 30;
 /// Largest distance of the end effector from its path between two instants, m.
 const PATH_TOLERANCE: f64 = 1e-7;
 
-/// Largest coordinate, m.
-const MAX_PLACE: f64 = 1e6;
-
-/// A path of the end effector of a block in axes of the base, while each block of its chain holds its b.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TipPath {
-    /// The block; `None` for the last one that nothing sits on.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub block: Option<String>,
-    /// Where it begins, m; `None` for where the blocks are in their poses, or in the middle of their ranges.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "three")]
-    pub from: Option<[f64; 3]>,
-    /// Where it ends, m.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "three")]
-    pub to: Option<[f64; 3]>,
-    /// Points between at which it rests, m.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub via: Vec<[f64; 3]>,
-    /// Whether it goes back to its begin.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub closed: bool,
-    /// Duration, s; `None` for the least that keeps all limits of the drives.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub time: Option<f64>,
-    /// Time law of each leg.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub law: Option<TimeLaw>,
-    /// What the blocks do with freedoms that are left.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub choice: Option<FreedomChoice>,
-    /// b of blocks, rad; others hold that of their pose.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub b: BTreeMap<String, f64>,
+words! {
+    /// Time law of each leg of a path in space.
+    pub enum TipLaw {
+        Quintic = "quintic", "Quintic", "A polynomial of the fifth degree";
+        Septic = "septic", "Septic", "A polynomial of the seventh degree, without jerk at its ends";
+        Fastest = "fastest", "Fastest", "As fast as torque, speed and acceleration limits allow";
+    }
 }
 
-/// Reads three numbers: a list or, from the command line, numbers with commas between them.
-fn three<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 3]>, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Stated {
-        List([f64; 3]),
-        Words(String),
-    }
-    let want = || D::Error::custom("want three numbers, m, as [0.4, 0.3, 0.1]");
-    match Stated::deserialize(from).map_err(|_| want())? {
-        Stated::List(list) => Ok(Some(list)),
-        Stated::Words(words) => {
-            let numbers: Result<Vec<f64>, _> = words.split(',').map(|word| word.trim().parse()).collect();
-            Ok(Some(numbers.ok().and_then(|numbers| numbers.try_into().ok()).ok_or_else(want)?))
+impl TipLaw {
+    fn law(self) -> TimeLaw {
+        match self {
+            Self::Quintic => TimeLaw::Quintic,
+            Self::Septic => TimeLaw::Septic,
+            Self::Fastest => TimeLaw::Fastest,
         }
+    }
+}
+
+keyed! {
+    /// A path of the end effector of a block in axes of the base, while each block of its chain holds its b.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct TipPath at "tip" {
+        /// Block whose end effector goes along the path; all blocks that carry it go along.
+        block: Option<String> = Key::NONE, instead: "the last block that nothing sits on";
+        /// Where the path begins, in axes of the base.
+        from: Option<[f64; 3]> = Key::NONE, range: POINT_RANGE,
+            instead: "where the blocks are in their poses, or in the middle of their ranges";
+        /// Points between at which the end effector rests, in order.
+        via: Vec<[f64; 3]> = "[]", range: POINT_RANGE;
+        /// Where the path ends, in axes of the base.
+        to: Option<[f64; 3]> = Key::REQUIRED, range: POINT_RANGE;
+        /// Whether the path returns to its begin.
+        closed: bool = "false";
+        /// Duration of the whole path.
+        time: Option<f64> = Key::NONE, range: TIME, instead: "the least that keeps all limits of the drives",
+            when: "another law: the fastest one finds the time" => |tip| tip.law != TipLaw::Fastest;
+        /// Time law of each leg.
+        law: TipLaw = "quintic";
+        /// What the blocks do with freedoms that are left.
+        choice: FreedomChoice = "least-rates";
+        named:
+        /// Pose constant that a block holds on the way.
+        b: BTreeMap<String, f64> = Key::NONE, range: POSE_CONSTANT_RANGE, instead: "that of its pose";
     }
 }
 
@@ -128,18 +122,14 @@ pub(super) struct TipChain {
 }
 
 impl TipChain {
-    /// Returns the chain up to a block; each block of it holds the b that is stated or, without one, that of its pose.
+    /// Returns the chain of blocks that carry each other, the one on the base first; each holds the b that is stated or,
+    /// without one, that of its pose.
     ///
     /// # Errors
     /// If a block has no b.
-    pub fn of(assembly: &Assembly, block: usize, b: &BTreeMap<String, f64>) -> Result<Self, TipError> {
-        let blocks = assembly.chain(block);
-        if let Some(other) = b.keys().find(|name| !blocks.iter().any(|i| assembly.blocks()[*i].name == **name)) {
-            let names: Vec<&str> = blocks.iter().map(|i| assembly.blocks()[*i].name.as_str()).collect();
-            return wrong("b", format!("no block {other:?} moves this end effector: want {}", names.join(" or ")));
-        }
+    pub fn of(assembly: &Assembly, blocks: &[usize], b: &BTreeMap<String, f64>) -> Result<Self, TipError> {
         let (mut parts, mut near) = (Vec::new(), Vec::new());
-        for i in &blocks {
+        for i in blocks {
             let own = &assembly.blocks()[*i];
             let machine = holding(assembly, *i).or_else(|why| wrong("block", why))?;
             let space = PoseSpace::of(&machine);
@@ -149,8 +139,7 @@ impl TipChain {
                 .filter(|pose| pose.len() == machine.drives())
                 .map(|pose| PerDrive::from_fn(pose.len(), |k| pose[k]));
             let b = match (b.get(&own.name), &pose) {
-                (Some(b), _) if b.is_finite() && b.abs() <= MAX_PLACE => *b,
-                (Some(_), _) => return wrong("b", format!("b of {} is no angle: want a finite number, rad", own.name)),
+                (Some(b), _) => *b,
                 (None, Some(pose)) => space.b(pose),
                 (None, None) => match gentle_motion(&machine) {
                     Ok(made) => made.task.b,
@@ -161,12 +150,7 @@ impl TipChain {
             near.extend(near_own.iter().copied());
             parts.push(ChainBlock::of(own, Arc::new(space), b));
         }
-        Ok(Self { blocks, chain: PlatformChain::new(parts), near: DVector::from_vec(near) })
-    }
-
-    /// Returns the blocks, the one on the base first.
-    pub fn blocks(&self) -> &[usize] {
-        &self.blocks
+        Ok(Self { blocks: blocks.to_vec(), chain: PlatformChain::new(parts), near: DVector::from_vec(near) })
     }
 
     /// Returns the angles at a place near some; of a place that is not reached, says which one is.
@@ -214,15 +198,26 @@ impl TipPath {
     ///
     /// # Errors
     /// If there is no such block.
-    pub(super) fn block(&self, assembly: &Assembly) -> Result<usize, TipError> {
-        let names = || assembly.blocks().iter().map(|block| block.name.as_str()).collect::<Vec<_>>().join(", ");
+    fn block(&self, assembly: &Assembly) -> Result<usize, TipError> {
         match &self.block {
             Some(name) => match assembly.blocks().iter().position(|block| block.name == *name) {
                 Some(found) => Ok(found),
-                None => wrong("block", format!("no block {name:?}: want one of {}", names())),
+                None => {
+                    let names: Vec<&str> = assembly.blocks().iter().map(|block| block.name.as_str()).collect();
+                    let name = quote_clipped(name);
+                    wrong("block", format!("names no block {name:?}: want one of {}", names.join(", ")))
+                }
             },
             None => assembly.longest_chain().last().copied().map_or_else(|| wrong("block", "no block"), Ok),
         }
+    }
+
+    /// Returns the places of the blocks that it leads, the one on the base first.
+    ///
+    /// # Errors
+    /// If there is no such block.
+    pub(super) fn chain(&self, assembly: &Assembly) -> Result<Vec<usize>, TipError> {
+        Ok(assembly.chain(self.block(assembly)?))
     }
 
     fn points(&self, of: &TipChain, near: &DVector<f64>) -> Result<Vec<(&'static str, Vector3<f64>)>, TipError> {
@@ -234,11 +229,6 @@ impl TipPath {
         };
         let mut all: Vec<_> = [("from", from)].into_iter().chain(via).chain([("to", to)]).collect();
         all.extend(self.closed.then_some(("from", from)));
-        for (key, p) in &all {
-            if !p.iter().all(|x| x.abs() <= MAX_PLACE) {
-                return wrong(key, format!("is {p:?}: want three numbers, m"));
-            }
-        }
         if let Some(pair) = all.windows(2).find(|pair| pair[0].1 == pair[1].1) {
             return wrong(pair[1].0, format!("is {:?}, as the point before: want another place", pair[1].1));
         }
@@ -250,22 +240,10 @@ impl TipPath {
     /// # Errors
     /// If a place is not reached, or the way to it; the error says what would be.
     pub(super) fn plan(&self, assembly: &Assembly, rest: &[DriveAngles]) -> Result<TipPlan, TipError> {
-        let law = self.law.unwrap_or(TimeLaw::Quintic);
-        if law != TimeLaw::Fastest && (law.is_fastest() || !law.is_smooth()) {
-            return wrong("law", "want quintic, septic or fastest");
-        }
-        if law.is_fastest() && self.time.is_some() {
-            return wrong(
-                "time",
-                "has no use with law = \"fastest\", which finds it: want no time, or law = \"quintic\"",
-            );
-        }
-        if let Some(time) = self.time.filter(|time| !(TIME[0]..=TIME[1]).contains(time)) {
-            return wrong("time", format!("is {time}: want {} to {} s", TIME[0], TIME[1]));
-        }
+        let law = self.law.law();
         let progress = |u: f64| if law.is_fastest() { u } else { law.at(u, 1.0).s };
-        let of = TipChain::of(assembly, self.block(assembly)?, &self.b)?;
-        let choice = self.choice.unwrap_or(FreedomChoice::LeastRates);
+        let of = TipChain::of(assembly, &self.chain(assembly)?, &self.b)?;
+        let choice = self.choice;
         let near = |choice| if choice == FreedomChoice::MidRange { of.chain.middles().0 } else { of.near.clone() };
         let points = self.points(&of, &near(choice))?;
         let from = of.pose("from", &points[0].1, &near(choice), |_| true)?;
@@ -310,7 +288,7 @@ impl TipPath {
                 let timed = motions.iter().map(|motions| fastest_leg(assembly, &of.blocks, motions, rest, count));
                 even = Instants::timed(&motions, &timed.collect::<Result<Vec<_>, _>>()?);
             }
-            let time = match self.time {
+            let time = match self.time.filter(|_| !law.is_fastest()) {
                 Some(time) => time,
                 None => {
                     let Some(motions) = even.motions() else { return nowhere() };

@@ -6,6 +6,7 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::timing::limits::LimitedQuantity;
 use stillbase_planning::timing::{ConstraintRow, LimitsOnPath, fastest_within};
 use stillbase_planning::{Motion, Reference};
+use stillbase_settings::range::Range;
 
 /// Number of instants in each interval at which limits are checked.
 const CHECKS: usize = 8;
@@ -13,8 +14,8 @@ const CHECKS: usize = 8;
 /// Factor on the least time, for what torques do between these instants.
 const TIME_MARGIN: f64 = 1.0005;
 
-/// Range of the time, s.
-pub(super) const TIME: [f64; 2] = [1e-3, 3600.0];
+/// Range of the time.
+pub(super) const TIME: Range = Range::new(1e-3, 3600.0, "s");
 
 /// Part of the time of a leg over which the accelerations of the fastest law change, and the number of its instants.
 const EASED_SHARE: f64 = 0.02;
@@ -187,5 +188,5 @@ pub(super) fn least_time(
     if !is_limited || squared == 0.0 {
         return wrong("time", "is not stated, and no drive of these blocks has a limit: want time, s");
     }
-    Ok((TIME_MARGIN * squared.sqrt()).clamp(TIME[0], TIME[1]))
+    Ok((TIME_MARGIN * squared.sqrt()).clamp(TIME.low(), TIME.high()))
 }

@@ -121,7 +121,7 @@ fn within_key(of: &KeyType, value: &Value) -> Option<Value> {
         }
         (KeyType::Number(range) | KeyType::PerDrive(range), value) if number(value).is_some() => clamped(range, value),
         (KeyType::PerDrive(range) | KeyType::List(_, range), Value::Array(all)) => list(range, all).map(Value::Array),
-        (KeyType::Points(range), Value::Array(points)) => {
+        (KeyType::Points(_, range), Value::Array(points)) => {
             let point = |point: &Value| list(range, point.as_array()?).map(Value::Array);
             points.iter().map(point).collect::<Option<Vec<_>>>().map(Value::Array)
         }

@@ -103,6 +103,25 @@ impl ScenarioError {
     }
 }
 
+impl ScenarioError {
+    /// Returns the error of a text that is not that of a file, whose lines and examples say nothing; `label` names what is
+    /// wrong.
+    #[must_use]
+    pub fn without_lines(self, label: &str) -> Self {
+        let file = label.to_owned();
+        match self {
+            Self::Faulty { first, mut faults, .. } => {
+                for fault in &mut faults.list {
+                    (fault.line, fault.column, fault.example) = (None, None, String::new());
+                }
+                Self::Faulty { file, first: Box::new(first.without_lines(label)), faults }
+            }
+            Self::Syntax { message, .. } => Self::Syntax { file, line: None, message },
+            other => other,
+        }
+    }
+}
+
 /// Formats a line number as it follows the name of a file.
 fn at(line: Option<usize>) -> String {
     line.map(|line| format!(":{line}")).unwrap_or_default()

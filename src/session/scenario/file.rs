@@ -133,6 +133,8 @@ struct Reading<'a> {
     file: &'a StatedFile<'a>,
     label: &'a str,
     find: Option<FindMachine<'a>>,
+    /// Task in place of that of the file.
+    task: Option<&'a Task>,
 }
 
 impl Reading<'_> {
@@ -254,7 +256,8 @@ impl Reading<'_> {
         let stem = Path::new(label).file_stem().map_or_else(|| label.into(), |s| s.to_string_lossy());
         let stem = plain(&stem).into_owned();
         let states = |key: &str| stated.get("task").is_some_and(|task| task.get(key).is_some());
-        let task = file.task.completed(states, &machine).map_err(|why| match why {
+        let completed = self.task.map_or_else(|| file.task.completed(states, &machine), |task| Ok(task.clone()));
+        let task = completed.map_err(|why| match why {
             IncompleteTask::Missing(key) => {
                 self.syntax(Problem { path: KeyPath::new(&[&"task"]), wrong: Wrong::Missing(key.into()) })
             }
@@ -356,6 +359,20 @@ impl Reading<'_> {
     }
 }
 
+/// Reads the scenario of a given machine from a file, which names some machine. A task is taken in place of the file's.
+///
+/// # Errors
+/// The first thing that is wrong.
+pub(crate) fn read_of_machine(
+    file: &StatedFile,
+    label: &str,
+    machine: &Machine,
+    task: Option<&Task>,
+) -> Result<Scenario, Problem> {
+    let find: FindMachine = &|_| Ok(machine.clone().into());
+    Reading { file, label, find: Some(find), task }.scenario().map_err(|first| first.0)
+}
+
 /// Keys of which a scenario has at least one.
 const OWN_TABLES: [&str; 3] = ["machine", "task", "edit"];
 
@@ -365,7 +382,7 @@ impl Scenario {
     /// # Errors
     /// If the text is not a valid scenario; the error has all faults of the text.
     pub fn parse(text: &str, label: &str, find: Option<FindMachine>) -> Result<Self, ScenarioError> {
-        let read = |file: &StatedFile| Reading { file, label, find }.scenario();
+        let read = |file: &StatedFile| Reading { file, label, find, task: None }.scenario();
         let first = match StatedFile::parse(text) {
             Ok(file) => match read(&file) {
                 Ok(scenario) => return Ok(scenario),

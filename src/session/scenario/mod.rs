@@ -30,6 +30,7 @@ pub use choices::{Corners, PathShape, ReactionObjective, TaskKind};
 pub use definition::Scenario;
 pub use design::{DesignBrief, NameSet, to_value};
 pub use error::ScenarioError;
+pub(crate) use file::read_of_machine;
 pub use file::{FileContent, FindMachine, content};
 pub use kept::{Bookmark, Branch, MAX_BOOKMARKS, MAX_BRANCHES, MAX_NAME};
 pub use keys::{KEYS, key_of, keys, part_of};

@@ -36,6 +36,7 @@ pub(super) const ROWS: &[ResultRow] = &[
     row("ulps", "1", "Number of floating-point numbers from one to the other."),
     // Settings.
     row("keys", "", "The settings."),
+    row("keys.of", "", "Kind of scenario that has the setting, if it is not that of one machine: assembly."),
     row("keys.holds", "", "What the setting holds, with its range."),
     row("default", "", "Default; absent for a key that has to be given."),
     row("instead", "", "What applies if the key has no value."),
