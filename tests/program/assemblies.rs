@@ -220,7 +220,9 @@ fn assemblies_are_simulated_alone_and_with_settings() {
     }
     // What has no use in the file is a note, with which the run goes on.
     let folder = Folder::new("idle-base");
-    let file = word(folder.file("idle.toml", "machine = \"two-arms\"\n[base]\nmass = 3\n"));
+    let task = "kind = \"reactionless\"\nb = 2.2\nfrom = [0.5, 0.5]\nto = [0.4, 0.6]\n";
+    let idle = format!("machine = \"two-arms\"\n[base]\nmass = 3\n[task.left]\n{task}[task.right]\n{task}");
+    let file = word(folder.file("idle.toml", idle));
     let out = stillbase(&["simulate", &file, "--json"]);
     let notes = text(&out.stderr);
     assert!(
