@@ -122,7 +122,8 @@ fn what_is_shown_as_a_default_is_taken() {
             _ if name("limits") => path.replace('*', "a1"),
             _ => path.to_owned(),
         };
-        let pair = format!("{own}=none");
+        let pair = format!("{}=none", own.replace('*', "arm"));
+        let case = if key["of"] == "assembly" { "four-freedoms" } else { case };
         prints(&["simulate", case, "--every", "1000", "--set", &pair]);
         if name("drive") || name("limits") || name("link") {
             prints(&["check", "nine-link", "--set", &pair]);
