@@ -134,10 +134,11 @@ fn against(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
 /// Draws a button for each other block that can pass its payload to the block that is led, or take that of it.
 fn hand_over(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>) {
     let Some(shared) = session.run().shared() else { return };
-    let (own, blocks) = (shared.block().block, shared.assembly().blocks());
+    let assembly = shared.assembly_at(session.frame().step);
+    let (own, blocks) = (shared.block().block, assembly.blocks());
     let holds = |i: usize| blocks[i].machine.spec().payload.mass > 0.0;
     for (i, block) in blocks.iter().enumerate() {
-        if shared.assembly().parallel([own, i]).is_err() || !(holds(own) || holds(i)) {
+        if assembly.parallel([own, i]).is_err() || !(holds(own) || holds(i)) {
             continue;
         }
         let ([from, to], words) = match (holds(own), holds(i)) {

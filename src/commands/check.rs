@@ -157,7 +157,7 @@ fn ground_line(inertia: &Inertia) -> String {
 impl CheckArguments {
     /// Prints the verdict; a machine that is not balanced is no failure.
     pub fn run(&self) -> Result<(), Failure> {
-        if let Some(assembly) = self.machine.assembly_file()? {
+        if let Some(assembly) = self.machine.assembly()? {
             return check_assembly::check(&assembly, &self.format, &self.strict);
         }
         let found = self.machine.find().map_err(|why| self.machine.incomplete_drawing().unwrap_or(why))?;

@@ -228,9 +228,21 @@ impl MachineArgument {
     /// # Errors
     /// As [`load`](Self::load), or as [`assembly_file`](Self::assembly_file).
     pub fn load_assembly(&self) -> Result<Assembly, Failure> {
-        match self.assembly_file()? {
+        match self.assembly()? {
             Some(assembly) => Ok(assembly),
             None => self.load().map(Assembly::from),
+        }
+    }
+
+    /// Returns the assembly that the argument names, or that of its scenario, with its settings changed; `None` for anything
+    /// else.
+    ///
+    /// # Errors
+    /// As [`assembly_file`](Self::assembly_file), or as [`assembly_scenario`].
+    pub fn assembly(&self) -> Result<Option<Assembly>, Failure> {
+        match self.assembly_file()? {
+            None => Ok(self.assembly_scenario()?.map(|scenario| scenario.assembly)),
+            found => Ok(found),
         }
     }
 

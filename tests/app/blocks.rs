@@ -14,6 +14,7 @@ pub const TESTS: &[Test] = tests![
     the_hand_leads_a_block_in_its_own_plane,
     another_block_is_led_and_taken_back,
     the_hand_leads_a_chain_in_space,
+    loads_change_hands_where_the_arms_meet,
     what_belongs_to_the_assembly_is_not_offered,
 ];
 
@@ -141,6 +142,28 @@ fn the_hand_leads_a_chain_in_space() {
     h.get_by_label_contains("carrier · carrier").click();
     h.run_steps(3);
     assert!(h.query_by_label("in space, with what carries it").is_none());
+}
+
+/// The button passes a load at the present step where the arms meet, and says how far they are apart elsewhere.
+fn loads_change_hands_where_the_arms_meet() {
+    let mut h = opened("hand-over");
+    let over = |h: &Window| session(h).to_scenario().to_toml().matches("do = \"hand-over\"").count();
+    assert!(items(&mut h).iter().filter(|text| *text == "0.4 kg").count() == 2, "both loads are seen");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(1.0));
+    h.run_steps(2);
+    h.get_by_label("exchange payloads with right").click();
+    h.run_steps(2);
+    assert!(h.query_by_label_contains("the end effectors of left and right are apart by").is_some());
+    assert_eq!(over(&h), 1, "that of the scenario");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Seek(3.1));
+    h.run_steps(2);
+    h.get_by_label("exchange payloads with right").click();
+    h.run_steps(2);
+    assert_eq!(session(&h).undo_title(), Some("left hands its payload to right"));
+    assert!((session(&h).frame().time - 3.1).abs() < 1e-9 && over(&h) == 1, "the later one is of another branch");
+    h.state_mut().app_state_mut().carry_out(SessionCommand::Undo);
+    h.run_steps(2);
+    assert!(session(&h).length() > 4.7, "the scenario is back");
 }
 
 fn what_belongs_to_the_assembly_is_not_offered() {

@@ -164,7 +164,7 @@ fn what_cannot_be_balanced_is_told_and_changes_nothing() {
     h.get_by_label("heaviest").click();
     h.run_steps(3);
     type_into(&mut h, "heaviest kg", "0.5");
-    assert!(h.query_by_label_contains("no counterweights balance this machine within these bounds").is_some());
+    assert!(h.query_by_label_contains("no counterweights balance these links within these bounds").is_some());
     let wider = |h: &Window| h.query_all_by_label_contains("kg a counterweight").next().is_some();
     assert!(h.query_by_label_contains("would do").is_some() && wider(&h));
     h.query_all_by_label_contains("kg a counterweight").next().expect("a proposal").click();

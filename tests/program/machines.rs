@@ -515,7 +515,7 @@ fn a_machine_without_a_front_says_why_beside_the_others() {
     assert_eq!(keys(&all["fronts"][0]), ["machine", "refused"]);
     assert!(all["fronts"][0]["refused"].as_str().expect("why").contains("no heavier"), "{all}");
     assert_eq!(all["fronts"][1]["front"].as_array().map(Vec::len), Some(1));
-    assert!(prints(&line).contains("\nnine-link-bare: no counterweights balance this machine"));
+    assert!(prints(&line).contains("\nnine-link-bare: no counterweights balance these links"));
     let ask = |more: &[&str], status: i32, words: &[&str]| {
         fails(&[&["design", BARE, "two-drive", "--counterweights"], more].concat(), status, words);
     };

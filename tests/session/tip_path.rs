@@ -160,6 +160,21 @@ fn a_carrier_stands_still_where_it_can() {
     }
 }
 
+/// Whether a carrier that stands still where it can leads the end effector does not depend on how fast it goes.
+#[test]
+fn a_still_carrier_takes_over_with_every_law() {
+    let assembly = builtin("carrier-and-arm");
+    for to in ["0.4, 0.52, 0.14", "0.45, 0.45, 0.09", "0.52, 0.42, 0.06"] {
+        for law in ["quintic", "septic", "fastest"] {
+            let text = format!("from = [0.45, 0.35, 0.09]\nto = [{to}]\nlaw = \"{law}\"\nchoice = \"still-carrier\"\n");
+            let all = frames(&scenario(&assembly, &text).unwrap_or_else(|why| panic!("{to} {law}: {why}")));
+            let end = all.last().expect("a frame").tips[1];
+            let wanted: Vec<f64> = to.split(", ").map(|x| x.parse().expect("a number")).collect();
+            assert!((end - Vector3::from_column_slice(&wanted)).norm() < 1e-6, "{to} {law}: {end}");
+        }
+    }
+}
+
 /// A closed way brings mid-range angles back, and they are nearest to the middles of their ranges all along.
 #[test]
 fn mid_range_comes_back() {
@@ -285,7 +300,7 @@ fn proposals_work_as_printed() {
             Err(why) => assert!(key == "from" && !why.contains("is not reached at these b"), "{mended}{why}"),
         }
     }
-    let way = "to = [0.45, 0.55, 0.1]\ntime = 1.0\n";
+    let way = "to = [0.7, 0.3, 0.0]\ntime = 1.0\n";
     let why = refused(&format!("{way}choice = \"still-carrier\"\n"));
     let choice = why.rsplit_once("want choice = ").expect(&why).1;
     scenario(&assembly, &format!("{way}choice = {choice}\n")).expect("as proposed");

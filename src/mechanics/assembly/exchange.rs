@@ -52,63 +52,59 @@ impl Assembly {
             return Err(format!("neither {one} nor {other} holds anything: want payload.mass above 0 for one of them"));
         }
         let moving = self.moving(states);
-        let [near, far] = pair.map(|i| moving[i].platform);
-        let [grip, other_grip] = [0, 1].map(|i| Grip::of(blocks[i], &states[pair[i]]));
-        let apart = [(near[0] - far[0]).norm(), (near[1] - far[1]).norm(), (grip.rate - along * other_grip.rate).abs()];
+        let hands @ [own, far] = pair.map(|i| Hand::of(&self.blocks()[i], moving[i].platform, &states[i]));
+        let apart = [(own.tip - far.tip).norm(), (own.speed - far.speed).norm(), (own.rate - along * far.rate).abs()];
         let said = [("are apart by", "m"), ("move apart at", "m/s"), ("turn what they hold apart at", "rad/s")];
-        let too_far = apart.iter().zip(MEETING).zip(said).find(|((x, most), _)| x > &most);
+        let too_far = apart.into_iter().zip(MEETING).zip(said).find(|((x, most), _)| x > most);
         if let Some(((x, most), (verb, unit))) = too_far {
-            let (x, most) = (significant(*x), ShortNumber(most));
+            let (x, most) = (significant(x), ShortNumber(most));
             return Err(format!(
                 "the end effectors of {one} and {other} {verb} {x} {unit}: want at most {most} {unit}"
             ));
         }
-        let places = [0, 1].map(|i| grip_place(blocks[i], [near, far][i][0], held[i], [&grip, &other_grip][i]));
-        let taken = [
-            taken_over(blocks[0], near[0], held[1], places[1], &grip),
-            taken_over(blocks[1], far[0], held[0], places[0], &other_grip),
-        ];
+        let [first, second] = hands.map(|hand| hand.place());
+        let taken = [own.taking(held[1], second), far.taking(held[0], first)];
         let (one, other) = (one.clone(), other.clone());
         let change = |name: &str, machine: Machine| {
-            let taken = if *name == one {
-                taken[0]
-            } else if *name == other {
-                taken[1]
-            } else {
-                return Ok(machine);
-            };
+            let Some(i) = [&one, &other].iter().position(|own| *own == name) else { return Ok(machine) };
             let mut spec = machine.spec().clone();
-            spec.payload = taken;
+            spec.payload = taken[i];
             Machine::new(spec)
         };
         self.clone().with_machines(change).map_err(|why: MachineError| why.to_string())
     }
 }
 
-/// The link that holds the payload of a block.
-struct Grip {
-    /// Direction along it in the plane, a unit vector.
+/// The end effector of a block, with the link that holds its payload.
+#[derive(Clone, Copy)]
+struct Hand<'a> {
+    block: &'a Block,
+    /// Place, m, and velocity, m/s, of the end effector, in axes of the base.
+    tip: Vector3<f64>,
+    speed: Vector3<f64>,
+    /// Direction along the link in the plane, a unit vector.
     along: Vector,
-    /// Its rate, rad/s.
+    /// Rate of the link, rad/s.
     rate: f64,
 }
 
-impl Grip {
-    fn of(block: &Block, state: &BlockState) -> Self {
+impl<'a> Hand<'a> {
+    fn of(block: &'a Block, [tip, speed, _]: [Vector3<f64>; 3], state: &BlockState) -> Self {
         let link = &block.machine.resolved_links()[block.machine.end_link()];
-        Self { along: state.q.units()[link.drive] * link.sign, rate: state.qd[link.drive] }
+        let along = state.q.units()[link.drive] * link.sign;
+        Self { block, tip, speed, along, rate: state.qd[link.drive] }
     }
-}
 
-/// Returns where the centre of mass of a payload is, m, in axes of the base; its height is that of the end effector.
-fn grip_place(block: &Block, tip: Vector3<f64>, payload: Payload, grip: &Grip) -> Vector3<f64> {
-    let [along, left] = payload.offset;
-    tip + block.mount.in_space(grip.along * Vector::new(along, left), 0.0)
-}
+    /// Returns where the centre of mass of its payload is, m, in axes of the base, at the height of the end effector.
+    fn place(&self) -> Vector3<f64> {
+        let [along, left] = self.block.machine.spec().payload.offset;
+        self.tip + self.block.mount.in_space(self.along * Vector::new(along, left), 0.0)
+    }
 
-/// Returns a payload as a block holds it whose end effector is at `tip`, m; its centre of mass stays at `place`.
-fn taken_over(block: &Block, tip: Vector3<f64>, payload: Payload, place: Vector3<f64>, grip: &Grip) -> Payload {
-    let off = block.mount.in_plane(&(place - tip)) * grip.along.conj();
-    let offset = if payload.mass > 0.0 { [off.re, off.im] } else { [0.0; 2] };
-    Payload { offset, axial: block.platform_height(), ..payload }
+    /// Returns a payload as it is held here, with its centre of mass at a place, m.
+    fn taking(&self, payload: Payload, place: Vector3<f64>) -> Payload {
+        let off = self.block.mount.in_plane(&(place - self.tip)) * self.along.conj();
+        let offset = if payload.mass > 0.0 { [off.re, off.im] } else { [0.0; 2] };
+        Payload { offset, axial: self.block.platform_height(), ..payload }
+    }
 }

@@ -178,7 +178,7 @@ pub enum CounterweightError {
     },
     /// These bounds contradict each other: a minimal set.
     #[error(
-        "no counterweights balance this machine within these bounds: {}{}",
+        "no counterweights balance these links within these bounds: {}{}",
         listed(.bounds),
         sufficient_relief(.reliefs)
     )]
@@ -190,14 +190,14 @@ pub enum CounterweightError {
         reliefs: Vec<Vec<BoundRelaxation>>,
     },
     /// No masses and positions on these links balance the machine.
-    #[error("no counterweights on these links alone balance this machine: want more links that may carry one")]
+    #[error("no counterweights on these links alone balance the whole: want more links that may carry one")]
     TooFew,
     /// No masses and positions on these links balance a block of an assembly.
     #[error("block {0}: no counterweights on these links alone balance it: want more of its links that may carry one")]
     TooFewOnBlock(String),
     /// Every solution would violate the clearance of a pin.
     #[error(
-        "no counterweights balance this machine and stay {clearance} m clear of every pin{}",
+        "no counterweights balance these links and stay {clearance} m clear of every pin{}",
         sufficient_relief(.reliefs)
     )]
     Reaches {

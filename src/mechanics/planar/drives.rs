@@ -185,12 +185,15 @@ impl PartialEq for PerDrive {
 pub struct DriveAngles(pub PerDrive);
 
 impl DriveAngles {
-    /// e(q_k) of every drive; beyond the last that of the ground, 1.
+    /// e(q_k) of every drive; after the last that of the ground, 1.
     #[inline]
     pub fn units(&self) -> UnitVectors {
-        let mut e = [GROUND_UNIT; MAX_DRIVES];
+        let mut e = [Vector::new(0.0, 0.0); MAX_DRIVES];
         for (e, &q) in e.iter_mut().zip(self.0.iter()) {
             *e = unit(q);
+        }
+        if let Some(ground) = e.get_mut(self.0.len()) {
+            *ground = GROUND_UNIT;
         }
         e
     }
@@ -211,7 +214,18 @@ impl Deref for DriveAngles {
 }
 
 /// Unit vector of links that keep their orientation.
-pub const GROUND_UNIT: Vector = Vector::new(1.0, 0.0);
+const GROUND_UNIT: Vector = Vector::new(1.0, 0.0);
+
+/// Returns the unit vectors of drives, with that of the ground after the last.
+#[inline]
+pub fn with_ground<const N: usize>(drives: &[Vector; N]) -> UnitVectors {
+    let mut e = [Vector::new(0.0, 0.0); MAX_DRIVES];
+    e[..N].copy_from_slice(drives);
+    if let Some(ground) = e.get_mut(N) {
+        *ground = GROUND_UNIT;
+    }
+    e
+}
 
 /// The unit vectors e(q_k): the only trigonometric functions that the dynamics needs.
 pub type UnitVectors = [Vector; MAX_DRIVES];

@@ -8,6 +8,6 @@ mod sincos;
 mod vector;
 
 pub use circle::{circle, equal_area};
-pub use drives::{DriveAngles, GROUND_UNIT, MAX_DRIVES, PerDrive, UnitVectors};
+pub use drives::{DriveAngles, MAX_DRIVES, PerDrive, UnitVectors, with_ground};
 pub use sincos::unit;
 pub use vector::{Pose2, Vector, Wrench, cross, dot, length};

@@ -15,7 +15,7 @@ use stillbase_mechanics::assembly::{BlockState, MAX_BLOCKS, SpatialBase};
 use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_session::Run;
 use stillbase_session::assembly::AssemblyBlock;
-use stillbase_settings::number::ShortNumber;
+use stillbase_settings::number::fixed_or_finer;
 use stillbase_simulation::frame::{Frame, SharedBase};
 
 /// The stages of the blocks that are not led, and the meshes of all.
@@ -308,7 +308,7 @@ impl BlockStages {
             let line = Polyline::new(format!("reaction/{name}"), strips, 3.0, palette.reaction).on_top();
             scene.lines.push(line);
             let end = (shared.origin + length * along).map(|x| x as f32).into();
-            let text = format!("{name} {} {unit}", ShortNumber((1e3 * vector.norm()).round() / 1e3));
+            let text = format!("{name} {} {unit}", fixed_or_finer(vector.norm(), 3));
             scene.labels.push(words("reaction/words", end, text, palette.reaction));
         }
     }

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::chain::PlatformChain;
-use super::choice::FreedomChoice;
+use super::choice::{FreedomChoice, least_norm};
 use super::pose::{PLACE_TOLERANCE, is_within, nearest_pose};
 
 /// Largest change of an angle from one point to the next, rad: above it a pose is not the continuation of the one before.
@@ -99,9 +99,7 @@ fn corrected(chain: &PlatformChain, p: &Vector3<f64>, mut a: DVector<f64>) -> Op
         }
         let jacobian = chain.jacobian(a.as_slice());
         let own = DMatrix::from_fn(3, chain.freedoms(), |row, k| jacobian[(row, k)]);
-        let svd = own.svd(true, true);
-        let most = svd.singular_values.max();
-        a += svd.solve(&DVector::from_column_slice(off.as_slice()), 1e-9 * most).ok()?;
+        a += least_norm(&own, &off, 1e-7);
     }
     None
 }

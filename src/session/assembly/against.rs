@@ -85,9 +85,8 @@ impl AssemblyScenario {
             let edits = &mut task.scenario.edits;
             all.extend(edits.extract_if(.., |timed| matches!(timed.edit, Edit::HandOver { .. })));
         }
-        let edits = &mut self.tasks[led].scenario.edits;
-        edits.extend(all);
-        edits.sort_by_key(|timed| timed.step);
+        // In the order of the file, by which refusals count them.
+        self.tasks[led].scenario.edits.extend(all);
     }
 
     /// Gives each block its part of the drags in space of one that was led.

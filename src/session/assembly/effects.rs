@@ -25,6 +25,10 @@ impl AssemblyScenario {
             let base = StatedBase { kind: self.base.kind(), ..StatedBase::default() };
             return if base.uses(key) { None } else { assembly_key_of(path).map(|key| key.when) };
         }
+        if part == "tip" {
+            let path = &self.tip.as_ref()?.path;
+            return if path.uses(key) { None } else { assembly_key_of(&format!("tip.{key}")).map(|key| key.when) };
+        }
         let (block, key) = key.split_once('.')?;
         let scenario = &self.tasks[self.assembly.blocks().iter().position(|own| own.name == block)?].scenario;
         match part {
@@ -50,6 +54,8 @@ impl AssemblyScenario {
                 }
             })
         });
-        of_base.chain(of_blocks).collect()
+        let of_tip = self.tip.iter().filter(|tip| tip.path.time.is_some()).map(|_| "tip.time".to_owned());
+        let of_tip = of_tip.filter_map(|path| self.condition_for_effect(&path).map(|when| (path, when)));
+        of_base.chain(of_tip).chain(of_blocks).collect()
     }
 }

@@ -66,7 +66,7 @@ keyed! {
         /// Whether the path returns to its begin.
         closed: bool = "false";
         /// Duration of the whole path.
-        time: Option<f64> = Key::NONE, range: TIME, instead: "the least that keeps all limits of the drives",
+        time: Option<f64> = Key::NONE, range: TIME, instead: "the least that keeps limits on torque, speed and acceleration",
             when: "another law: the fastest one finds the time" => |tip| tip.law != TipLaw::Fastest;
         /// Time law of each leg.
         law: TipLaw = "quintic";

@@ -6,6 +6,7 @@ use stillbase_mechanics::planar::{DriveAngles, PerDrive};
 use stillbase_planning::timing::limits::LimitedQuantity;
 use stillbase_planning::timing::{ConstraintRow, LimitsOnPath, fastest_within};
 use stillbase_planning::{Motion, Reference};
+use stillbase_settings::number::significant;
 use stillbase_settings::range::Range;
 
 /// Number of instants in each interval at which limits are checked.
@@ -185,8 +186,13 @@ pub(super) fn least_time(
             }
         }
     }
-    if !is_limited || squared == 0.0 {
-        return wrong("time", "is not stated, and no drive of these blocks has a limit: want time, s");
+    let time = TIME_MARGIN * squared.sqrt();
+    if !is_limited || time < TIME.low() {
+        return wrong("time", "is not stated, and no drive that moves has a limit: want time, s");
     }
-    Ok((TIME_MARGIN * squared.sqrt()).clamp(TIME.low(), TIME.high()))
+    if time > TIME.high() {
+        let (time, most) = (significant(time), TIME.high());
+        return wrong("time", format!("would be {time} s by the limits of the drives: want at most {most} s"));
+    }
+    Ok(time)
 }

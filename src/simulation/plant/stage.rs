@@ -8,7 +8,7 @@ use super::{FrictionTorques, MAX_CONTACTS, MovingBody, SlipDirections, Slope, St
 use stillbase_mechanics::dynamics::{
     BaseWrench, Factors, angular_rate, assemble, by_drives, leading_entries, matrix_times, wrench_with,
 };
-use stillbase_mechanics::planar::{GROUND_UNIT, MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit};
+use stillbase_mechanics::planar::{MAX_DRIVES, PerDrive, Pose2, Vector, cross, dot, unit, with_ground};
 
 /// The part of a [`State`] on which the equations of motion depend.
 #[derive(Clone, Copy, Debug)]
@@ -191,11 +191,9 @@ impl<const N: usize> RungeKuttaStage<N> {
     /// Returns the stage as a slope, padded to the maximum size.
     #[inline(always)]
     pub fn slope(&self, drives: usize) -> Slope {
-        let mut e = [GROUND_UNIT; MAX_DRIVES];
-        e[..N].copy_from_slice(&self.e);
         let StateRates { q, momenta, position, momentum, wheel, work, lost, .. } = self.rates;
         Slope {
-            e,
+            e: with_ground(&self.e),
             qd: PerDrive::from(q),
             qdd: PerDrive::from(self.acceleration),
             torque: PerDrive::of_array(drives, self.torque),

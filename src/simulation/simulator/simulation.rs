@@ -7,7 +7,7 @@ use stillbase_mechanics::dynamics::{self, BaseWrench, ExternalLoads, by_drives};
 use stillbase_mechanics::joint_forces::{InternalLoads, PinLoads};
 use stillbase_mechanics::kinematics::{end_effector, least_transmission};
 use stillbase_mechanics::machine::{Inertia, Machine, MachineError, RelativeAngle};
-use stillbase_mechanics::planar::{DriveAngles, GROUND_UNIT, MAX_DRIVES, PerDrive, Vector, length};
+use stillbase_mechanics::planar::{DriveAngles, MAX_DRIVES, PerDrive, Vector, length, with_ground};
 use stillbase_planning::Reference;
 use stillbase_planning::pose_space::plane_map;
 use stillbase_planning::reactionless::PlaneMap;
@@ -477,8 +477,7 @@ fn evaluate_of<const N: usize, const MOVES: bool>(simulation: &mut Simulation) {
     let body = &bodies[usize::from(*loaded)];
     let (at, n) = (ReducedState::<N>::of(state), reference.q.len());
     let stage = body.stage::<N, MOVES>(&at, slip, stuck_torque, |e, rate, base, velocity| {
-        let mut units = [GROUND_UNIT; MAX_DRIVES];
-        units[..N].copy_from_slice(e);
+        let units = with_ground(e);
         let turning = if MOVES { rate[N - 1] } else { 0.0 };
         let reading = Reading {
             q: DriveAngles(PerDrive::from_fn(n, |k| at.q[k] - base.angle)),
