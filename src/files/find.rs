@@ -318,7 +318,9 @@ fn found_scenario(name: &str) -> Result<FoundScenario, ScenarioError> {
                 Some(machine) => scenario_for(name, machine.into()),
                 None => {
                     let builtin = machine::builtins().iter().map(Machine::name);
-                    let machines: Vec<&str> = builtin.chain(Template::ALL.map(Template::word)).collect();
+                    let assemblies = builtin_assemblies().iter().map(|own| own.name.as_str());
+                    let machines: Vec<&str> =
+                        builtin.chain(assemblies).chain(Template::ALL.map(Template::word)).collect();
                     Err(UnknownName::new(
                         name,
                         "scenario",

@@ -112,6 +112,7 @@ impl Scene {
             item
         }));
         self.bodies.extend(other.bodies);
+        self.labels.extend(other.labels);
     }
 }
 
@@ -230,6 +231,8 @@ impl BlockStages {
             // Of workspaces that are not at hand, the boundary is enough.
             other.areas.clear();
             other.solids.retain(|solid| !is_part(&solid.name, "workspace"));
+            // Words of several planes would cover each other, but for what an arm holds.
+            other.labels.retain(|label| is_part(&label.name, "payload"));
             scene.add(other.moved(&place(i)), &blocks[i].name, *first);
         }
         if let (Some((_, pose)), Some(_)) = (&self.body, &led.shared) {
