@@ -51,14 +51,10 @@ impl<'a> ChainLimits<'a> {
         Self { assembly, blocks, motions, states: states_at_rest(rest), rows, speeds }
     }
 
-    /// Returns the torques of all blocks with rates q′ `rate` and accelerations q′ `first` + q″ `second` of the chain.
-    fn torques(&self, s: f64, [rate, first, second]: [f64; 3]) -> [PerDrive; MAX_BLOCKS] {
+    /// Returns the torques of all blocks; `of` returns the state of a block of the chain.
+    fn torques(&self, of: impl Fn(usize) -> BlockState) -> [PerDrive; MAX_BLOCKS] {
         let mut states = self.states;
-        for (place, motion) in self.blocks.iter().zip(self.motions) {
-            let Reference { q, qd, qdd } = motion.at(s);
-            let acceleration = PerDrive::from_fn(q.len(), |k| first * qd[k] + second * qdd[k]);
-            states[*place] = BlockState { q, qd: PerDrive::from_fn(q.len(), |k| rate * qd[k]), qdd: acceleration };
-        }
+        self.blocks.iter().enumerate().for_each(|(i, place)| states[*place] = of(i));
         let mut torques = [PerDrive::zeros(0); MAX_BLOCKS];
         self.assembly.loads(&states, |i, of| torques[i] = of.torque);
         torques
@@ -71,15 +67,19 @@ impl LimitsOnPath for ChainLimits<'_> {
     }
 
     fn at(&self, s: f64, rows: &mut [ConstraintRow], speeds: &mut [f64]) -> f64 {
-        // Torques are linear in accelerations and in squares of rates.
-        let [rest, along, moving] = [[0.0; 3], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]].map(|of| self.torques(s, of));
+        let mut chain = self.states;
         let mut first = [PerDrive::zeros(0); MAX_BLOCKS];
         let mut second = first;
         for (i, (place, motion)) in self.blocks.iter().zip(self.motions).enumerate() {
             let motors = self.assembly.blocks()[*place].inertia.motors();
-            let Reference { qd, qdd, .. } = motion.at(s);
+            let Reference { q, qd, qdd } = motion.at(s);
             (first[i], second[i]) = (motors.to_motors(&qd), motors.to_motors(&qdd));
+            chain[i] = BlockState { q, qd, qdd };
         }
+        // Torques are linear in accelerations and in squares of rates.
+        let rest = self.torques(|i| at_rest(&chain[i].q));
+        let along = self.torques(|i| BlockState { qdd: chain[i].qd, ..at_rest(&chain[i].q) });
+        let moving = self.torques(|i| chain[i]);
         for (row, (block, k, quantity, limit)) in rows.iter_mut().zip(&self.rows) {
             let (place, k) = (self.blocks[*block], *k);
             *row = match quantity {

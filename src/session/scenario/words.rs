@@ -5,7 +5,7 @@ use super::names::name_of;
 use stillbase_mechanics::machine::{KeyPath, KeyStep, MachineWords};
 use stillbase_settings::key::{Key, KeyType};
 use stillbase_settings::mending::{Meant, Vocabulary};
-use stillbase_settings::word_row::{WordRow, row};
+use stillbase_settings::word_row::{WordRow, WordTable, row};
 
 /// The words of scenario files.
 pub(crate) struct ScenarioWords;
@@ -72,9 +72,7 @@ const STATED: &[WordRow] = &[
 /// Lists of a session, each with the word for one entry.
 const ENTRIES: [&str; 4] = ["edit", "bookmark", "note", "branch"];
 
-fn stated(path: &KeyPath) -> Option<&'static WordRow> {
-    WordRow::of(STATED, path)
-}
+const WORDS: WordTable = WordTable { rows: STATED, meant: &[] };
 
 /// Returns the place within the machine that the scenario holds.
 fn in_machine(path: &KeyPath) -> Option<KeyPath> {
@@ -104,24 +102,22 @@ impl Vocabulary for ScenarioWords {
         {
             return Some(format!("{list} {}", i + 1));
         }
-        let listed = stated(path).map(|row| row.name_at(path));
-        listed.or_else(|| setting(path).map(|(key, _)| name_of(&key)))
+        WORDS.name(path).or_else(|| setting(path).map(|(key, _)| name_of(&key)))
     }
 
     fn want(&self, path: &KeyPath) -> Option<String> {
         if let Some(inner) = in_machine(path) {
             return MachineWords.want(&inner);
         }
-        let listed = stated(path).map(|row| row.want.to_owned()).filter(|want| !want.is_empty());
-        listed.or_else(|| setting(path).map(|(_, key)| key.value_type.to_string()))
+        WORDS.want(path).or_else(|| setting(path).map(|(_, key)| key.value_type.to_string()))
     }
 
     fn example(&self, path: &KeyPath) -> Option<&'static str> {
         if let Some(inner) = in_machine(path) {
             return MachineWords.example(&inner);
         }
-        if let Some(row) = stated(path).filter(|row| !row.example.is_empty()) {
-            return Some(row.example);
+        if let Some(example) = WORDS.example(path) {
+            return Some(example);
         }
         let (_, key) = setting(path)?;
         match key.value_type {
